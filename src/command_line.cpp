@@ -25,8 +25,8 @@ namespace rpc
 namespace
 {
 
-constexpr std::array options_with_value{"--input",        "--mesh-info", "--new", "--output",
-                                        "--print-schema", "--restart",   "--set"};
+constexpr std::array options_with_value{"--input",  "--make-surface", "--mesh-info", "--new",
+                                        "--output", "--print-schema", "--restart",   "--set"};
 constexpr std::array flags{"--check", "--print-parameters", "--verbose", "--version", "--help"};
 
 bool is_one_of(const std::string &text, const std::vector<std::string> &names)
@@ -127,6 +127,7 @@ CommandLine parse_command_line(const std::vector<char *> &argument_pointers)
 
   CommandLineProcessor parser(false, true, false);
   parser.setOption("input", &line.input, "");
+  parser.setOption("make-surface", &line.surface, "");
   parser.setOption("mesh-info", &line.mesh, "");
   parser.setOption("new", &line.new_deck, "");
   parser.setOption("output", &line.output, "");
@@ -238,6 +239,8 @@ Usage: rpc --new=NAME
   --new                lists commented decks to start from
   --new=NAME           writes one of them, NAME.xml, and never over a file that is there
   --mesh-info=FILE     tells blocks, sides, sizes and quality of a geometry or mesh
+  --make-surface=FILE  writes a synthetic rough surface, .npy, .csv or .asc, as --set says, e.g.
+                       --set="RMS Slope=0.1" --set="Points=256"; see doc/input/surfaces.md
   --output=DIR         folder for the results, made if missing; default: the current one
   --set="A->B=VALUE"   sets a parameter of the deck, any number of times,
                        e.g. --set="Contact->Yield Stress=16" --set="Mesh->Cells={80, 16}"

@@ -17,6 +17,7 @@ struct CommandLine {
   std::vector<std::string> assignments; ///< of --set, in order
   bool check = false;
   std::string mesh;             ///< a geometry or mesh that is to be told about
+  std::string surface;          ///< a file of heights that is to be made
   bool writes_template = false; ///< a deck to start from
   std::string new_deck;         ///< its name; empty or help: the menu of them
   bool help = false;
@@ -29,7 +30,8 @@ struct CommandLine {
   /// Whether there is a scene to be solved or checked: texts need no kernels and so no GPU.
   bool solves() const
   {
-    return !help && !version && !print_parameters && !prints_schema && !writes_template && mesh.empty();
+    return !help && !version && !print_parameters && !prints_schema && !writes_template && mesh.empty() &&
+           surface.empty();
   }
 };
 

@@ -3,6 +3,7 @@
 #include "command_line.hpp"
 #include "gpu.hpp"
 #include "host_program.hpp"
+#include "make_surface.hpp"
 #include "mesh_info.hpp"
 #include "new_deck.hpp"
 #include "notes.hpp"
@@ -210,6 +211,10 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
   }
   if (line.writes_template) {
     rpc::on_root(*comm, ExitCode::bad_input, [&] { out << rpc::new_deck(line.new_deck, line.output); });
+    return ExitCode::converged;
+  }
+  if (!line.surface.empty()) {
+    rpc::on_root(*comm, ExitCode::bad_input, [&] { out << rpc::make_surface(line.surface, line.assignments); });
     return ExitCode::converged;
   }
   if (!line.mesh.empty()) {

@@ -205,8 +205,11 @@ std::string law_text(const contact::ContactOptions &side, const UnitNames &units
 void print_foundations(Block &block, const Scene &scene)
 {
   for (const auto &side : scene.model.contact) {
+    const std::string unit = scene.model.units.length;
+    const auto &surface = side.obstacle.surface;
+    const std::string detail = surface && surface->detail ? ", " + surface->detail->told(unit) : "";
     const std::string obstacle = side.obstacle.exists() ? std::string("; the gap follows from the obstacle") +
-                                                              (side.obstacle.moves() ? ", which moves" : "")
+                                                              (side.obstacle.moves() ? ", which moves" : "") + detail
                                                         : "";
     block.line("foundation", "\"" + side.name_in_results() + "\": " + law_text(side, scene.model.units) + obstacle);
   }

@@ -30,6 +30,9 @@ struct Density {
   static constexpr double reach = 2;
   /// Parts of faces in space in which a search by bounds looks for what the samples miss, of a side: some 1 microsecond each.
   static constexpr int searched = 1 << 15;
+  /// Of a surface that is given at places of its own: samples for each of their distances, of a side at most, and parts of an edge at most.
+  static constexpr double for_detail = 2, of_detail = 1 << 20;
+  static constexpr int most_parts = 256;
 };
 // Unseen contact that changes the solution by less, in the energy norm, is below what any mesh of engineers resolves.
 constexpr double notable = 0.05;
@@ -51,6 +54,13 @@ double pushed_out(const ContactOptions &options, const double depth, const doubl
   const double stiffness = 1 / (width / modulus + 1 / options.stiffness(x)), yield = options.yield_stress(x);
   if (stiffness * depth <= yield) return stiffness * depth * depth;
   return 2 * yield * depth - yield * yield / stiffness;
+}
+
+/// Of an obstacle that may have more detail than the mesh; null of others.
+const SurfaceDetail *detail_of(const ContactOptions &options)
+{
+  const auto &surface = options.obstacle.surface;
+  return surface && surface->detail ? &*surface->detail : nullptr;
 }
 
 /// One side and its foundation.
@@ -85,9 +95,28 @@ struct SideSamples {
     return found;
   }
 
-  /// Whether a facet may reach into the foundation: its nodes tell, if what they show varies little.
+  /// Whether a facet may reach into the foundation: its nodes tell, if what they show varies little, or the foundation does, if it can.
   bool is_near(const LO f) const
   {
+    if (const SurfaceDetail *const detail = detail_of(options)) {
+      const Obstacle &obstacle = options.obstacle;
+      Bounds places = Bounds::empty();
+      double moved = 0;
+      for (int a = 0; a < rows.nodes; ++a) {
+        Point x{}, u{};
+        std::copy_n(rows.place(f, a), rows.dim, x.begin());
+        std::copy_n(rows.displacement(f, a), rows.dim, u.begin());
+        places.add(difference(x, obstacle.point));
+        moved = std::max(moved, length(u));
+      }
+      // Between nodes of order 2 a facet may reach beyond their box by an eighth of it, and displacements may be larger in the same way.
+      for (int c = 0; c < rows.dim; ++c) {
+        const double beyond = (places.upper[c] - places.lower[c]) / 8;
+        places.lower[c] -= beyond;
+        places.upper[c] += beyond;
+      }
+      return detail->clearance(places) <= 25. / 16 * moved;
+    }
     double most = rows.column(f, 0, FacetRows::excess), least = most;
     for (int a = 1; a < rows.nodes; ++a) {
       most = std::max(most, rows.column(f, a, FacetRows::excess));
@@ -206,6 +235,15 @@ int parts_of(const mesh::Element &facet, const GO num_facets)
   return std::max(Density::fewest_parts, static_cast<int>(std::ceil(std::pow(wanted / facets, 1. / facet.dim))));
 }
 
+/// The same for a surface that is given at places of its own: so many that none of it is missed, as far as that is affordable.
+/// @param longest  facet of the side [m]
+int parts_for(const SurfaceDetail &detail, const mesh::Element &facet, const GO num_facets, const double longest)
+{
+  const double affordable = std::pow(Density::of_detail / std::max(1., double(num_facets)), 1. / facet.dim);
+  const double most = std::min<double>(Density::most_parts, affordable);
+  return static_cast<int>(std::min(std::ceil(Density::for_detail * longest / detail.spacing), most));
+}
+
 /// Whether nothing can lie between the nodes of flat facets: u and the gap are linear between them.
 bool is_linear(const mesh::Element &facet, const ContactOptions &options)
 {
@@ -241,18 +279,27 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     bearing_nothing += rows.bears_nothing(f) ? 1 : 0;
     partly_open += rows.is_partly_open(f) ? 1 : 0;
   }
-  const int parts = parts_of(facet, sum_all(mesh.comm(), GO(owned.size())));
+  const GO num_facets = sum_all(mesh.comm(), GO(owned.size()));
+  int parts = parts_of(facet, num_facets);
+  const SurfaceDetail *const detail = detail_of(options);
+  if (detail != nullptr) {
+    double longest = 0;
+    for (const LO f : owned) longest = std::max(longest, rows.size(f));
+    parts = std::max(parts, parts_for(*detail, facet, num_facets, max_all(mesh.comm(), longest)));
+  }
   const auto fine = lattice_of(facet, parts), coarse = lattice_of(facet, Density::fewest_parts);
   // Where a face in space touches on all of it, a few samples show how far the gap bends. What is unseen may be narrow, and so may be the part in the
   // foundation of a face that touches at one node: these faces share as many samples as a side may have.
-  const auto at_edges = facet.dim == 2 ? lattice_of(facet, parts_of(facet, sum_all(mesh.comm(), partly_open))) : fine;
+  const bool shares = facet.dim == 2 && detail == nullptr;
+  const auto at_edges = shares ? lattice_of(facet, parts_of(facet, sum_all(mesh.comm(), partly_open))) : fine;
   const SideSamples samples{options, rows, fine, d.axisymmetric()}, few{options, rows, coarse, d.axisymmetric()},
       edges{options, rows, at_edges, d.axisymmetric()};
   const bool searches = facet.dim == 2 && !options.obstacle.exists() && options.gap.bounds;
   const GO all_bearing_nothing = std::max(GO(1), sum_all(mesh.comm(), bearing_nothing));
   // In space facets whose nodes are far need no samples: bounds find narrow pits there, and of obstacles nodes show at least that a normal misses them.
-  const bool sieves = parts == Density::fewest_parts || (facet.dim == 2 && (searches || options.obstacle.exists()));
-  const GapReading reading{options, rows, facet.dim == 1 ? fine : coarse, coarse, d.axisymmetric()};
+  const bool sieves = parts == Density::fewest_parts || detail != nullptr ||
+                      (facet.dim == 2 && (searches || options.obstacle.exists()));
+  const GapReading reading{options, rows, shares ? coarse : fine, coarse, d.axisymmetric()};
   const int most_searched = searches ? static_cast<int>(Density::searched / all_bearing_nothing) : 0; // of each facet
   const EvaluateShape shape = shape_of(facet);
   const auto block = to_host(mesh.block);
@@ -264,7 +311,7 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     const bool unseen = rows.bears_nothing(f);
     Found found;
     if (!sieves || samples.is_near(f)) {
-      const bool all_touches = facet.dim == 2 && !unseen && !rows.is_partly_open(f);
+      const bool all_touches = shares && !unseen && !rows.is_partly_open(f);
       found = (unseen ? samples : all_touches ? few : edges).look(f, modulus, least);
     }
     if (unseen && most_searched > 0 && !(found.deepest > 0))
