@@ -217,9 +217,9 @@ TEST(ObstacleOptions, KindsDescribeThemselves)
 {
   const Teuchos::ParameterList valid = contact::valid_obstacle_parameters();
   const auto help = [&](const std::string &name) { return valid.getEntry(name).docString(); };
-  EXPECT_EQ(help("Type"),
-            "Shape of the foundation's surface: `plane`, `sphere` (in 2D also named `circle`), in 3D `cylinder`, or "
-            "`none`: see Gap.");
+  EXPECT_EQ(help("Type"), "Shape of the foundation's surface: `plane`, `sphere` (in 2D also named `circle`), in 3D "
+                          "`cylinder`, `height map`, or "
+                          "`none`: see Gap.");
   EXPECT_EQ(help("Point"), "plane: a point on it; cylinder: a point on its axis [m]. Numbers, or expressions of t.");
   EXPECT_EQ(help("Radius"), "sphere, cylinder: its radius, > 0 [m].");
   for (const auto &entry : valid) { // each goes with the types that its help begins with, and is refused with others
@@ -231,6 +231,8 @@ TEST(ObstacleOptions, KindsDescribeThemselves)
       list.set(name, 7.);
     else if (valid.isType<bool>(name))
       list.set(name, true);
+    else if (valid.isType<std::string>(name))
+      list.set(name, "bilinear");
     else
       list.set(name, Numbers(Teuchos::tuple(1., 2.)));
     expect_error(ExitCode::bad_input, "->" + name + "\" does not go with", [&] { read(list); });

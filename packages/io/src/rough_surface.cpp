@@ -17,8 +17,11 @@ namespace
 {
 
 using Complex = std::complex<double>;
-constexpr double two_pi = 6.28318530717958647692;
-constexpr int most_points = 16384;
+/// Of a circle, and of a surface that a file and the memory hold.
+struct SurfaceBounds {
+  static constexpr double two_pi = 6.28318530717958647692;
+  static constexpr int points = 16384;
+};
 
 /// Numbers from 0 to below 1, the same on all machines.
 class Uniform
@@ -62,7 +65,8 @@ void draw(Waves &waves, const RoughSurfaceOptions &o)
   Uniform uniform(o.seed);
   const double exponent = (o.is_profile ? 0.5 : 1) + o.hurst;
   const auto draw_one = [&](const int p, const int r) {
-    const double phase = two_pi * uniform(), other = uniform(); // both of all waves, whatever is made of them
+    const double phase = SurfaceBounds::two_pi * uniform(),
+                 other = uniform(); // both of all waves, whatever is made of them
     const double q = std::hypot(p, r);
     if (q < o.lowest || q > o.highest) return;
     const double size = o.gaussian ? std::sqrt(-std::log(1 - other)) : 1;
@@ -92,7 +96,7 @@ void scale(Waves &waves, const RoughSurfaceOptions &o)
 {
   double heights = 0, slopes = 0;
   waves.each([&](const int p, const int r, const Complex &c) {
-    const double q = two_pi * std::hypot(p, r) / o.period;
+    const double q = SurfaceBounds::two_pi * std::hypot(p, r) / o.period;
     heights += std::norm(c);
     slopes += q * q * std::norm(c);
   });
@@ -153,8 +157,8 @@ RoughSurfaceOptions rough_surface_options(const Teuchos::ParameterList &list)
   constexpr double much = 1e30;
   o.is_profile = list.get<bool>("Profile");
   o.points = list.get<int>("Points");
-  RPC_REQUIRE(o.points >= 2 && o.points <= most_points,
-              where << "\"Points\" must be from 2 to " << most_points << ", got " << o.points);
+  RPC_REQUIRE(o.points >= 2 && o.points <= SurfaceBounds::points,
+              where << "\"Points\" must be from 2 to " << SurfaceBounds::points << ", got " << o.points);
   o.period = number("Period", 0, much, false, "> 0 and finite [m]");
   o.hurst = number("Hurst Exponent", 0, 1, true, "from 0 to 1");
   o.lowest = number("Lowest Wave Number", 1, much, true, ">= 1 and finite");
@@ -186,7 +190,7 @@ std::vector<double> rough_surface(const RoughSurfaceOptions &o)
   scale(waves, o);
   const int n = o.points, m = waves.size;
   std::vector<Complex> turn(n); // exp(2 pi i k/n)
-  for (int k = 0; k < n; ++k) turn[k] = std::polar(1., two_pi * k / n);
+  for (int k = 0; k < n; ++k) turn[k] = std::polar(1., SurfaceBounds::two_pi * k / n);
   const auto index = [n](const long long k) { return static_cast<std::size_t>((k % n + n) % n); };
   const int rows = o.is_profile ? 1 : n, half = o.is_profile ? 0 : m;
   std::vector<double> heights;
