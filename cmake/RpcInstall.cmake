@@ -11,7 +11,7 @@ install(FILES ${PROJECT_BINARY_DIR}/rpcConfig.cmake ${PROJECT_BINARY_DIR}/rpcCon
               ${CMAKE_CURRENT_LIST_DIR}/RpcTrilinosCheck.cmake
         DESTINATION ${destination})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/input/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rpc/input
-        FILES_MATCHING PATTERN *.xml PATTERN *.yaml PATTERN *.geo PATTERN *.step)
+        FILES_MATCHING PATTERN *.xml PATTERN *.yaml PATTERN *.geo PATTERN *.npy PATTERN *.step)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/NOTICE ${PROJECT_SOURCE_DIR}/CITATION.cff
               ${PROJECT_SOURCE_DIR}/doc/licences.md
         DESTINATION ${CMAKE_INSTALL_DOCDIR})
