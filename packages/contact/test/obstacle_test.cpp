@@ -198,7 +198,8 @@ TEST(ObstacleOptions, RefuseWhatDoesNotFit)
     change(list);
     expect_error(ExitCode::bad_input, words, [&] { read(list); });
   };
-  refuse("one of none, plane, sphere, circle, cylinder", [](auto &list) { list.set("Type", "cone"); });
+  refuse("one of none, plane, sphere, circle, cylinder, ellipsoid, ellipse, cone, wedge, flat punch, torus",
+         [](auto &list) { list.set("Type", "pyramid"); });
   refuse("must hold 2 numbers or expressions of t, got 3",
          [](auto &list) { list.set("Point", Numbers(Teuchos::tuple(0., 0., 0.))); });
   refuse("must hold 2 numbers, got 0", [](auto &list) { list.remove("Normal"); });
@@ -217,11 +218,16 @@ TEST(ObstacleOptions, KindsDescribeThemselves)
 {
   const Teuchos::ParameterList valid = contact::valid_obstacle_parameters();
   const auto help = [&](const std::string &name) { return valid.getEntry(name).docString(); };
-  EXPECT_EQ(help("Type"), "Shape of the foundation's surface: `plane`, `sphere` (in 2D also named `circle`), in 3D "
-                          "`cylinder`, `height map`, or "
-                          "`none`: see Gap.");
-  EXPECT_EQ(help("Point"), "plane: a point on it; cylinder: a point on its axis [m]. Numbers, or expressions of t.");
-  EXPECT_EQ(help("Radius"), "sphere, cylinder: its radius, > 0 [m].");
+  EXPECT_EQ(
+      help("Type"),
+      "Shape of the foundation's surface: `plane`, `sphere` (in 2D also named `circle`), in 3D `cylinder`, "
+      "`ellipsoid` (in 2D also named `ellipse`), `cone`, `wedge`, `flat punch`, in 3D `torus`, `height map`, or `none`: see Gap.");
+  EXPECT_EQ(help("Point"), "plane: a point on it; cylinder: a point on its axis; cone: its tip; wedge: a point on its "
+                           "edge; flat punch: the middle of its face "
+                           "[m]. Numbers, or expressions of t.");
+  EXPECT_EQ(help("Radius"), "sphere, cylinder: its radius, > 0 [m]; flat punch: that of its shank, in 2D half its "
+                            "width, > 0 [m]; torus: that of the "
+                            "circle in the middle of its tube, > 0 [m].");
   for (const auto &entry : valid) { // each goes with the types that its help begins with, and is refused with others
     const std::string &name = entry.first;
     if (name == "Type") continue;

@@ -26,11 +26,31 @@ Point unit_vector(const Teuchos::ParameterList &list, const std::string &name, c
   return scaled(1 / size, given);
 }
 
+Point unit_vector_or(const Teuchos::ParameterList &list, const std::string &name, const Point &fallback, const int dim,
+                     const std::string &path)
+{
+  return list.get<Teuchos::Array<double>>(name).empty() ? fallback : unit_vector(list, name, dim, path);
+}
+
+double positive_of(const Teuchos::ParameterList &list, const std::string &name, const std::string &path,
+                   const std::string &unit)
+{
+  const double value = list.get<double>(name);
+  RPC_REQUIRE(value > 0 && std::isfinite(value),
+              "deck: \"" << path << "->" << name << "\" must be > 0 and finite " << unit << ", got " << value);
+  return value;
+}
+
 double radius_of(const Teuchos::ParameterList &list, const std::string &path)
 {
-  const double radius = list.get<double>("Radius");
-  RPC_REQUIRE(radius > 0 && std::isfinite(radius),
-              "deck: \"" << path << "->Radius\" must be > 0 and finite [m], got " << radius);
+  return positive_of(list, "Radius", path);
+}
+
+double rounding_of(const Teuchos::ParameterList &list, const std::string &name, const std::string &path)
+{
+  const double radius = list.get<double>(name);
+  RPC_REQUIRE(radius >= 0 && std::isfinite(radius),
+              "deck: \"" << path << "->" << name << "\" must be >= 0 and finite [m] (0: sharp), got " << radius);
   return radius;
 }
 

@@ -15,8 +15,17 @@ namespace rpc::contact
 /// @param path  of the list, for messages   @throws rpc::Error (bad_input)
 Point unit_vector(const Teuchos::ParameterList &list, const std::string &name, int dim, const std::string &path);
 
-/// `Radius` [m]. @throws rpc::Error (bad_input) unless it is > 0 and finite
+/// The same, or another one where the list has none.
+Point unit_vector_or(const Teuchos::ParameterList &list, const std::string &name, const Point &fallback, int dim,
+                     const std::string &path);
+
+/// A number in [m], or of another unit. @throws rpc::Error (bad_input) unless it is > 0 and finite
+double positive_of(const Teuchos::ParameterList &list, const std::string &name, const std::string &path,
+                   const std::string &unit = "[m]");
+/// The same of `Radius`.
 double radius_of(const Teuchos::ParameterList &list, const std::string &path);
+/// A radius by which something is rounded [m]. @throws rpc::Error (bad_input) unless it is >= 0 and finite
+double rounding_of(const Teuchos::ParameterList &list, const std::string &name, const std::string &path);
 
 SurfaceParameter radius_parameter();   ///< `Radius`
 SurfaceParameter encloses_parameter(); ///< `Encloses Body`
