@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The gallery: classical and published problems, each solved by rpc and compared with what is right; started by ../gallery.sh.
 
-Runs the decks of this folder, reads their JSON files, and writes README.md and the pictures. Formulas: problems.py, problems_soil.py.
+Runs the decks of this folder, reads their JSON files, and writes README.md and the pictures. Formulas: problems.py, problems_soil.py, problems_tools.py.
 Exit codes: 0; 1 a value lies outside its error bar, or a run has failed; 2 bad command line.
 """
 import argparse
@@ -14,6 +14,7 @@ import tempfile
 
 import problems
 import problems_soil
+import problems_tools
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 PICTURE = os.path.join(HERE, "../picture.sh")
@@ -22,7 +23,8 @@ PICTURE_WIDTH, COLOURS = 760, 256  # [pixels] of the pictures, and the size of t
 MOST_DIGITS = 8
 PROBLEMS = (problems.hertz_line, problems.hertz_ball, problems.hertz_space, problems.sneddon_cone, problems.flat_punch,
             problems.westergaard, problems.mindlin, problems_soil.greco, problems_soil.namm_tsoy, problems_soil.ball_dent,
-            problems_soil.weitsman, problems_soil.raft, problems_soil.footing, problems_soil.limit_load)
+            problems_soil.weitsman, problems_soil.raft, problems_soil.footing, problems_soil.limit_load, problems_tools.wedge,
+            problems_tools.rounded_punch, problems_tools.hertz_ellipsoid)
 
 
 class CommandLineError(Exception):
@@ -183,7 +185,7 @@ def section(solved_problem):
 HEAD = """# Gallery
 
 Classical and published problems, solved by rpc and compared with what is right by formulas that have nothing to do with it ([problems.py](problems.py),
-[problems_soil.py](problems_soil.py)). This page and its pictures are made by one command, from the decks of this folder:
+[problems_soil.py](problems_soil.py), [problems_tools.py](problems_tools.py)). This page and its pictures are made by one command, from the decks of this folder:
 
 ```sh
 bash doc/gallery.sh

@@ -71,6 +71,26 @@ class Raft(unittest.TestCase):
         self.assertAlmostEqual(settlement, beam[1].right, places=8)
 
 
+class FarFields(unittest.TestCase):
+    def test_are_those_of_the_decks(self):
+        import far_fields
+
+        for name, text in far_fields.decks().items():
+            self.assertEqual(text, (FOLDER / name).read_text(), name)
+
+    def test_of_a_cylinder_is_that_of_hertz(self):
+        import far_fields
+
+        circle = far_fields.Profile(lambda x: x / 50)
+        self.assertAlmostEqual(circle.load() / 2, problems.hertz_line().quantities[0].right, places=9)
+        self.assertAlmostEqual(circle.pressure(0.0), problems.hertz_line().quantities[1].right, places=6)
+        places, forces, logarithm = circle.rule()
+        moments = [sum(forces * places**k) / circle.load() for k in (2, 4, 6)]  # of (1 - x^2)^(1/2)
+        for moment, right in zip(moments, (1 / 4, 1 / 8, 5 / 64)):
+            self.assertAlmostEqual(moment, right, places=9)
+        self.assertAlmostEqual(logarithm / circle.load(), -0.5 - math.log(2), places=7)
+
+
 class Page(unittest.TestCase):
     def test_has_each_problem_with_its_deck_and_a_small_picture(self):
         page = (FOLDER / "README.md").read_text()
