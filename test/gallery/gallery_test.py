@@ -76,7 +76,11 @@ class FarFields(unittest.TestCase):
         import far_fields
 
         for name, text in far_fields.decks().items():
-            self.assertEqual(text, (FOLDER / name).read_text(), name)
+            number = r"\d+\.\d+(?:e-\d+)?"
+            written = (FOLDER / name).read_text()
+            self.assertEqual(re.sub(number, "#", text), re.sub(number, "#", written), name)
+            for made, given in zip(re.findall(number, text), re.findall(number, written)):
+                self.assertAlmostEqual(float(made), float(given), delta=1e-6 * float(given), msg=name)
 
     def test_of_a_cylinder_is_that_of_hertz(self):
         import far_fields

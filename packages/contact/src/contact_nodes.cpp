@@ -190,14 +190,15 @@ void require_outward(const ContactOptions &options, const fem::SurfaceNodes &sur
     areas[along > 0 ? 0 : 1] += weight(i) * std::abs(along);
   }
   areas = summed(comm, areas);
-  RPC_REQUIRE(areas[0] > mostly * areas[1] || sum_all(comm, GO(weight.extent(0))) == 0,
-              "deck: \"" << options.path << "->Normal\" must lead out of the body, from side \"" << options.side
-                         << "\" into the foundation; it leads into the body. "
-                         << (options.obstacle.exists()
-                                 ? "Turn it round. Where the deck does not give it, the obstacle does: \"Normal\" of a "
-                                   "plane points from the foundation to the body, and \"Encloses Body\" tells on which "
-                                   "side of a sphere or cylinder the body lies."
-                                 : "Turn it round."));
+  RPC_REQUIRE(
+      areas[0] > mostly * areas[1] || sum_all(comm, GO(weight.extent(0))) == 0,
+      "deck: \"" << options.path << "->Normal\" must lead out of the body, from side \"" << options.side
+                 << "\" into the foundation; it leads into the body. "
+                 << (options.obstacle.exists()
+                         ? "Turn it round. Where the deck does not give it, the obstacle does: its \"Normal\", or the "
+                           "\"Axis\" of a cone, points from the foundation to the body, and \"Encloses Body\" "
+                           "tells on which side of a sphere, cylinder or ellipsoid the body lies."
+                         : "Turn it round."));
 }
 
 /// (n, dim) of the device, from a vector row by row.

@@ -16,7 +16,7 @@ namespace rpc::contact
 /// The foundation's surface where it has a simple shape.
 struct Obstacle {
   std::optional<Surface> surface = {};
-  Point point{}; ///< of a plane, the centre of a sphere, or one on the axis of a cylinder [m]
+  Point point{}; ///< of a plane, the centre of a sphere, one on the axis of a cylinder, the tip of a cone ... [m]
   std::array<ScalarField, 3> path =
       {};         ///< coordinates of `point` that change with time [m]; constant ones are not read
   Point origin{}; ///< where `point` is at t = 0 [m]
@@ -37,8 +37,8 @@ Obstacle obstacle_options(const Teuchos::ParameterList &list, int dim, const std
 
 // Of an obstacle that exists:
 
-/// Unit normal of the foundation at the point of its surface nearest to x, pointing into the foundation; nothing at the
-/// centre of a sphere or on the axis of a cylinder. doc/theory.md (3.6)
+/// Unit normal of the foundation at the point of its surface nearest to x, pointing into the foundation; nothing where none is the nearest, such as
+/// the centre of a sphere or the axis of a cylinder. doc/theory.md (3.6)
 std::optional<Point> direction_into(const Obstacle &obstacle, const Point &x);
 /// The parameter that says where there is no such normal, "Centre" or "Axis".
 std::string no_direction_at(const Obstacle &obstacle);

@@ -60,7 +60,7 @@ NearestOnSurface nearest_to_rounded(const Point &x, const Point &axis, const dou
 }
 
 /// Along a line the distance to a convex foundation is a convex function: Newton's method goes from outside to where the line enters, and never
-/// beyond.                                                                                                          (3.7b)
+/// beyond.                                                                                                          (3.7a)
 /// @param shape  with nearest(x) and lies_in(x)   @param direction  unit
 template <class Shape>
 std::optional<double> distance_along_convex(const Shape &shape, const Point &x, const Point &direction)

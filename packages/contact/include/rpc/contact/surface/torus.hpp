@@ -62,7 +62,7 @@ struct Torus {
     return scaled(z > 0 ? -1 : 1, axis);
   }
   bool lies_in(const Point &x) const { return length(from_tube(x)) < tube * (1 - Rounding::place); }
-  /// |from_tube(x + g direction)| = tube is a polynomial of degree 4 in g.                                             (3.7c)
+  /// |from_tube(x + g direction)| = tube is a polynomial of degree 4 in g.                                             (3.7b)
   std::optional<double> distance_along(const Point &x, const Point &direction) const
   {
     const double size = radius + tube, nearest = -inner(x, direction), big = radius / size, small = tube / size;
