@@ -72,7 +72,7 @@ def fits(value, schema, root):
 # (path in the beam's deck, value)
 ERRORS = [("Materail", {"Poisson's Ratio": 0.3}), ("Material->Youngs Modulus", 3.0), ("Material->Young's Modulus", "210 GPa"),
           ("Material->Poisson's Ratio", "0,3"), ("Mesh->Cells", "160 32"), ("Mesh->Cells", [160, 3.2]), ("Mesh->Element", "q2"), ("Mesh", 3),
-          ("Traction->top->y", 1.0), ("Traction->top", 1.0), ("Output", {"JSON": "on"}), ("Contact->Obstacle", {"Type": "cone"}),
+          ("Traction->top->y", 1.0), ("Traction->top", 1.0), ("Output", {"JSON": "on"}), ("Contact->Obstacle", {"Type": "pyramid"}),
           ("Steps", {"Times": 3.0}), ("Uzawa", {"Maximum Iterations": 2.5}), ("Yield Stress", 3.0)]
 GOOD = [("Contact->Remembers", False), ("Contact->Remembers", "auto"), ("Output", {"Exodus": False}), ("Output", {"Exodus": "split"}),
         ("Contact->Yield Stress", "4 + x"), ("Contact->Obstacle", {"Type": "plane", "Point": [0, "0.1*t"], "Normal": [0.0, 1.0]}),

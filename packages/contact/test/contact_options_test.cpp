@@ -219,8 +219,8 @@ TEST(ContactOptions, ValuesOutOfRangeAreRefusedByPathOnASideOrNone)
   for (const double value : {0., -1., nan, inf}) refused("Penalty", value);
   for (const double value : {0., -1., nan, -inf}) refused("Stiffness", value);
   ParameterList obstacle;
-  obstacle.sublist("Sides").sublist("wall").sublist("Obstacle").set("Type", "cone");
-  expect_refused(obstacle, {"\"Contact->Sides->wall->Obstacle->Type\"", "\"cone\""});
+  obstacle.sublist("Sides").sublist("wall").sublist("Obstacle").set("Type", "pyramid");
+  expect_refused(obstacle, {"\"Contact->Sides->wall->Obstacle->Type\"", "\"pyramid\""});
 }
 
 TEST(ContactOptions, SayWhatDentsMoveWith)
