@@ -94,11 +94,13 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   Scene scene;
   scene.name = std::filesystem::path(deck_path).stem().string();
   scene.mesh = mesh::mesh_options(deck.sublist("Mesh"), std::filesystem::path(deck_path).parent_path().string(), comm);
+  scene.model.units = units_options(deck.sublist("Units"));
+  auto *const file = std::get_if<mesh::GmshOptions>(&scene.mesh);
+  if (file && !deck.sublist("Units").getEntry("Length").isDefault()) file->length_unit = scene.model.units.length;
   const int dim = mesh::dimension(scene.mesh, comm);
   scene.time = deck.get<double>("Time");
   RPC_REQUIRE(std::isfinite(scene.time), "deck: \"Time\" must be finite, got " << scene.time);
   scene.model.kinematics = fem::kinematics_option(deck.get<std::string>("Kinematics"), dim);
-  scene.model.units = units_options(deck.sublist("Units"));
   scene.model.materials = fem::material_options(deck.sublist("Material"));
   scene.model.dirichlet = fem::dirichlet_options(deck.sublist("Dirichlet"), dim, parse);
   scene.model.tractions = fem::traction_options(deck.sublist("Traction"), dim, parse);

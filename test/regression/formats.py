@@ -143,6 +143,11 @@ meshio.write(sys.argv[2], out)
         said = self.rpc("--input=pin.yaml", "--check").stdout
         self.assertIn('"head": area', said)
         self.assertIn('"surface 2": area', said)
+        self.assertNotIn("note: mesh:", said)  # lengths of a STEP file are the deck's
+        (self.folder / "pin.yaml").write_text(deck.replace("mm", "m"))
+        self.assertIn(' m in this deck: lengths of the file are read in mm, for which "Units->Length" is mm', self.rpc("--input=pin.yaml", "--check").stdout)
+        (self.folder / "pin.yaml").write_text(deck.replace("  Units: {Length: mm}\n", ""))
+        self.assertIn(" in the file's mm; the deck's unit of length counts: see \"Units\"", self.rpc("--input=pin.yaml", "--check").stdout)
         (self.folder / "pin.yaml").write_text(deck.replace("surface 2", "foot"))
         result = self.rpc("--input=pin.yaml", "--check", code=None)
         self.expect_refusal(result, 2, ['"foot"', "surface 2", '"Mesh->Sides" chooses others by place or number'])

@@ -175,10 +175,12 @@ bool by_surfaces(const std::vector<SidePlace> &sides)
                      [](const SidePlace &side) { return !side.surfaces.empty() || !side.near.empty(); });
 }
 
-/// What a file of shapes has been taken for.
-std::string note_on_unit(const MeshData &mesh, const std::string &file)
+/// What a file of shapes has been taken for; empty where the deck's unit of length is the file's, or is named and the file tells none.
+/// @param unit  see GmshOptions::length_unit
+std::string note_on_unit(const MeshData &mesh, const std::string &file, const std::string &unit)
 {
   const bool has_unit = extension_of(file) != ".stl" && extension_of(file) != ".brep";
+  if (!unit.empty() && (unit == "mm" || !has_unit)) return "";
   const int dim = mesh.element.dim;
   std::ostringstream note;
   note << std::setprecision(3); // the same for all meshes of a curved body
@@ -191,8 +193,11 @@ std::string note_on_unit(const MeshData &mesh, const std::string &file)
     }
     note << (d > 0 ? " x " : "") << high - low;
   }
-  note << (has_unit ? " in the file's mm" : " in the file's unit of length, which it does not tell")
-       << "; the deck's unit of length counts: see \"Units\"";
+  if (unit.empty())
+    note << (has_unit ? " in the file's mm" : " in the file's unit of length, which it does not tell")
+         << "; the deck's unit of length counts: see \"Units\"";
+  else
+    note << " " << unit << " in this deck: lengths of the file are read in mm, for which \"Units->Length\" is mm";
   return note.str();
 }
 
@@ -245,7 +250,9 @@ MeshData meshed_geometry(const std::string &where, const GmshOptions &options)
   const std::string text = read_text(where, options.file);
   if (format_of(options.file) == MeshFormat::geo) check_last_line(where, text);
   MeshData mesh = made_by_gmsh(where, options);
-  if (format_of(options.file) == MeshFormat::shapes) mesh.notes.push_back(note_on_unit(mesh, options.file));
+  if (format_of(options.file) != MeshFormat::shapes) return mesh;
+  const std::string note = note_on_unit(mesh, options.file, options.length_unit);
+  if (!note.empty()) mesh.notes.push_back(note);
   return mesh;
 }
 
