@@ -72,11 +72,22 @@ bool touches(const analysis::Solution &s)
 
 } // namespace
 
-void Notes::add(const std::string &note)
+bool Notes::is_new(const std::string &note)
 {
-  if (note.empty() || std::find(all_.begin(), all_.end(), note) != all_.end()) return;
+  if (note.empty() || std::find(all_.begin(), all_.end(), note) != all_.end()) return false;
   all_.push_back(note);
   console_ << "note: " << note << std::endl;
+  return true;
+}
+
+void Notes::add(const std::string &note)
+{
+  if (is_new(note)) ++num_telling_;
+}
+
+void Notes::add_harmless(const std::string &note)
+{
+  is_new(note);
 }
 
 SeldomMeant::SeldomMeant(const Scene &scene, const bool goes_on, Notes &notes)
@@ -166,13 +177,23 @@ void SeldomMeant::at_end(const analysis::Solution &s)
   notes_.add(note.str());
 }
 
+HeldContact held_contact(const contact::ContactNodes &contact)
+{
+  if (contact.num_fixed == 0) return {"", true};
+  if (contact.num_fixed == contact.num_total)
+    return {"\"Dirichlet\" prescribes the normal displacement of all " + std::to_string(contact.num_total) +
+                " contact nodes and wins over contact there: the foundation holds nothing",
+            false};
+  return {"the normal displacement of " + std::to_string(contact.num_fixed) + " of " +
+              std::to_string(contact.num_total) +
+              " contact nodes is prescribed by \"Dirichlet\", which wins over contact there",
+          true};
+}
+
 std::vector<std::string> notes_on_mesh(const Scene &scene, const fem::Discretization &d,
                                        const contact::ContactNodes &contact)
 {
   std::vector<std::string> notes;
-  if (contact.num_fixed > 0)
-    notes.push_back("the normal displacement of " + std::to_string(contact.num_fixed) +
-                    " contact nodes is prescribed by \"Dirichlet\", which wins over contact there");
   if (contact.num_missing > 0)
     notes.push_back("from " + std::to_string(contact.num_missing) +
                     " nodes of the contact sides the normal misses the obstacle: they never touch");

@@ -19,11 +19,18 @@ public:
   explicit Notes(std::ostream &console) : console_(console) {}
   /// @param note  empty: none
   void add(const std::string &note);
+  /// The same of what is as most decks mean it: a check calls nothing wrong for its sake.
+  void add_harmless(const std::string &note);
   const std::vector<std::string> &all() const { return all_; }
+  /// Those that a user is to read before a run.
+  std::size_t num_telling() const { return num_telling_; }
 
 private:
+  bool is_new(const std::string &note);
+
   std::ostream &console_;
   std::vector<std::string> all_;
+  std::size_t num_telling_ = 0;
 };
 
 /// Notes on scenes that are right and seldom meant: nothing loads the body, nothing touches, a foundation reaches through the body, friction
@@ -53,7 +60,14 @@ private:
   double smallest_gap_ = std::numeric_limits<double>::infinity(); // of all steps [m]
 };
 
-/// What the user should know of a body on its mesh.
+/// Of contact nodes that supports hold as well.
+struct HeldContact {
+  std::string note; ///< empty: there are none
+  bool harmless;    ///< contact is left at others, as where a support ends at a contact side
+};
+HeldContact held_contact(const contact::ContactNodes &contact);
+
+/// What the user should know of a body on its mesh, but for held_contact().
 std::vector<std::string> notes_on_mesh(const Scene &scene, const fem::Discretization &d,
                                        const contact::ContactNodes &contact);
 

@@ -49,11 +49,15 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     table->scene(scene, d, contact);
     for (const std::string &note : d.mesh->notes) notes.add("mesh: " + note);
     const std::set<std::string> told = told_of_meshes; // sides of one mesh may differ by a number in their names
-    for (const std::string &note : notes_on_mesh(scene, d, contact)) {
+    const auto is_new = [&](const std::string &note) {
       const std::string without_counts = std::regex_replace(note, std::regex("[0-9]+"), "");
-      if (told.count(without_counts) == 0) notes.add(note);
       told_of_meshes.insert(without_counts);
-    }
+      return told.count(without_counts) == 0;
+    };
+    if (const HeldContact held = held_contact(contact); is_new(held.note))
+      held.harmless ? notes.add_harmless(held.note) : notes.add(held.note);
+    for (const std::string &note : notes_on_mesh(scene, d, contact))
+      if (is_new(note)) notes.add(note);
   };
   listener.step.start = [&](const analysis::Problem &problem, const analysis::Step &step) {
     seldom_meant.before(problem, step);
@@ -116,7 +120,7 @@ namespace
 /// Ends a run before its first solve.
 struct Ready {
   GO dofs, contact_points;
-  std::size_t num_notes;
+  std::size_t num_notes; // that are to be read
 };
 
 } // namespace
@@ -126,7 +130,7 @@ std::string check(const Scene &scene, const RCP<const Comm> &comm, std::ostream 
   const auto stop = [&](const analysis::Problem &problem, const analysis::Step &step, const Notes &notes) {
     print_understood(console, scene, problem, step);
     throw Ready{static_cast<GO>(problem.discretization().owned_dofs->getGlobalNumElements()), step.contact.num_total,
-                notes.all().size()};
+                notes.num_telling()};
   };
   const std::string nothing_wrong = "nothing wrong with it";
   std::ostringstream found;

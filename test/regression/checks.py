@@ -181,7 +181,7 @@ class ForceOnAWholeSide(RpcTestCase):
 
 
 class Check(RpcTestCase):
-    def expect(self, found, *arguments, notes=True, code=0):
+    def expect(self, found, *arguments, notes=False, code=0):
         result = self.rpc("--check", *arguments, "--output=out", code=code)
         self.assertIn(f"{'a run refuses nothing of it; see the note above' if notes else 'nothing wrong with it'}: {found}\n", result.stdout)
         self.assertNotIn("newton", result.stdout)
@@ -193,7 +193,17 @@ class Check(RpcTestCase):
         self.expect("210 dofs, 21 contact points", "--input=beam.xml", SMALL, "--set=Steps->Times={1,2}")
         self.expect("210 dofs, 21 contact points", "--input=beam.xml", SMALL, "--set=Adapt->Target Relative Error=0.1")
         self.expect("210 dofs, 21 contact points", "--input=beam.xml", SMALL, "--set=Adapt->Target Relative Error=0.1", "--set=Steps->Times={1,2}")
-        self.expect("210 dofs, 0 contact points", "--input=beam.xml", SMALL, "--set=Contact->Side=", notes=False)
+        self.expect("210 dofs, 0 contact points", "--input=beam.xml", SMALL, "--set=Contact->Side=")
+
+    def test_contact_nodes_that_supports_hold_too_are_nothing_wrong_unless_all_are(self):
+        told = self.rpc("--check", "--input=beam.xml", SMALL).stdout
+        self.assertIn("the normal displacement of 2 of 21 contact nodes is prescribed", told)
+        self.assertIn("nothing wrong with it", told)
+        held = PRESSED + '  Contact: {Side: top}\n'
+        (self.folder / "deck.yaml").write_text("deck:" + held)
+        told = self.rpc("--check", "--input=deck.yaml").stdout
+        self.assertIn("the foundation holds nothing", told)
+        self.assertIn("see the note above", told)
 
     def test_it_sends_to_the_notes_that_it_tells(self):
         (self.folder / "deck.yaml").write_text("deck:" + PRESSED)
@@ -297,7 +307,7 @@ Transfinite Curve "*" = 3; Transfinite Surface "*"; Transfinite Volume "*"; Reco
         more = ["--input=beam.xml", SMALL, "--output=out", "--set=Steps->Times={1,2,3}", "--set=Steps->Checkpoint Every=1", "--restart"]
         result = self.rpc("--check", *more)
         self.assertIn("note: goes on after ", result.stdout)
-        self.assertIn("see the note above: 210 dofs, 21 contact points", result.stdout)
+        self.assertIn("nothing wrong with it: 210 dofs, 21 contact points", result.stdout)
         other = self.rpc("--check", *more, "--set=Material->Young's Modulus=2001", code=2)
         self.assertIn("Material->Young's Modulus", errors(other)[0])
         after = {file: (self.folder / "out" / file).stat().st_mtime_ns for file in files(self.folder / "out")}

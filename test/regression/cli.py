@@ -61,7 +61,7 @@ class CommandLine(RpcTestCase):
 
     def test_check_writes_nothing(self):
         result = self.rpc("--check", "--input=beam.xml", "--output=out")
-        self.assertIn("see the note above: 10626 dofs, 161 contact points", result.stdout)
+        self.assertIn("nothing wrong with it: 10626 dofs, 161 contact points", result.stdout)
         self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_texts_need_no_kernels(self):
