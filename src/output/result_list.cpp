@@ -68,7 +68,7 @@ void add_error_bars(std::vector<Result> &all, const adapt::ObservedErrors &error
       if (result.key != q.name(scope)) continue;
       result.error_bar = errors.*q.value;
       const bool any = std::any_of(result.value.begin(), result.value.end(), [](const double x) { return x != 0; });
-      if (result.key == "contact_force" && result.error_bar == 0 && any) result.more = ", fixed by the load";
+      if (result.key == "contact_force" && result.error_bar == 0 && any) result.more += ", fixed by the load";
       const auto reason = errors.unknown.find(q.key);
       result.no_bar = reason == errors.unknown.end() ? "" : reason->second;
       result.tells_why = told && std::isnan(result.error_bar);
@@ -96,19 +96,18 @@ double length_of(const std::vector<double> &vector)
 }
 
 /// A foundation that does not give way is penetrated by what the solver's tolerance leaves of displacements, and a support that bears nothing
-/// has what rounding leaves of the other forces.
-void mark_nothing(std::vector<Result> &all, const double max_displacement, const double tolerance)
+/// has what rounding leaves of the other forces, as the sum of sides has whose forces cancel.
+/// @param largest  force of a side [N]
+void mark_nothing(std::vector<Result> &all, const double max_displacement, const double tolerance, double largest = 0)
 {
   constexpr double rounding = 1e-11; // of the largest force
-  double force = 0;
   for (const Result &result : all)
-    if (result.is_vector) force = std::max(force, length_of(result.value));
+    if (result.is_vector) largest = std::max(largest, length_of(result.value));
   for (Result &result : all) {
-    const bool support = result.key == "reaction_force";
-    if (!support && result.key != "max_penetration") continue;
+    if (!result.is_vector && result.key != "max_penetration") continue;
     const double bar = std::isfinite(result.error_bar) ? result.error_bar : 0, value = length_of(result.value);
-    if (value > 0 && value + bar <= (support ? rounding * force : tolerance * max_displacement))
-      result.nothing_to = support ? "to rounding" : "to the solver's tolerance";
+    if (value > 0 && value + bar <= (result.is_vector ? rounding * largest : tolerance * max_displacement))
+      result.nothing_to = result.is_vector ? "to rounding" : "to the solver's tolerance";
   }
 }
 
@@ -166,6 +165,9 @@ std::vector<Result> result_list(const Scene &scene, const Solution &s)
   const int dim = s.discretization.dim();
   std::vector<Result> all;
   if (!scene.model.contact.empty()) all = contact_results(s.contact.total, scope, dim);
+  if (scene.model.contact.size() > 1)
+    all.front().more =
+        ", the vector sum of " + std::to_string(scene.model.contact.size()) + " sides, each of which stands below";
   for (std::size_t k = 0; k < scene.model.dirichlet.size() && k < s.reactions.size(); ++k) {
     Result reaction =
         vector_result("reaction_force", s.reactions[k], dim, scope.units.of(unit::force, scope.per_length));
@@ -187,7 +189,9 @@ std::vector<Result> result_list(const Scene &scene, const Solution &s)
   add_place(all, scene, s);
   add_reaction_bars(all, errors);
   add_error_bars(all, errors, scope, s.adaptation && std::isfinite(s.adaptation->errors.energy));
-  mark_nothing(all, s.body.displacement, scene.step.uzawa.tolerance);
+  double largest = 0;
+  for (const auto &side : s.contact.sides) largest = std::max(largest, length(side.force));
+  mark_nothing(all, s.body.displacement, scene.step.uzawa.tolerance, largest);
   add_estimates(all, scene, s, errors);
   return all;
 }
