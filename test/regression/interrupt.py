@@ -5,6 +5,7 @@ signal goes to the last one alone."""
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import time
@@ -20,6 +21,11 @@ FACTORED = ["--set=Mesh->Cells={20,20,10}", "--set=Mesh->Upper={1,1,0.15}", "--s
             "--set=Material->Dilatation=full"]  # some ten seconds
 NO_MULTIGRID = ["--set=Linear Solver->MueLu->max levels=1", "--set=Linear Solver->MueLu->coarse: type=RELAXATION",
                 "--set=Linear Solver->Maximum Iterations=100000"]
+
+
+def told(number):
+    """The name of a signal, and of Open MPI's mpirun what it makes of another one."""
+    return number.name + (" (mpirun sends it for Ctrl-C, too)" if number == signal.SIGTERM and LAUNCH else "")
 
 
 def catches(pid, number):
@@ -78,17 +84,26 @@ class Interrupt(RpcTestCase):
                 process = self.start(LARGE)
                 os.kill(self.last_rank(process), number)
                 result = self.end(process, NOT_CONVERGED)
-                self.expect_refusal(result, NOT_CONVERGED, [f"interrupted by {number.name} before", "no results are written"])
+                self.expect_refusal(result, NOT_CONVERGED, [f"interrupted by {told(number)} before", "no results are written"])
                 self.assertEqual(files(self.folder), [])
+
+    @unittest.skipIf(RANKS == 1, "needs mpirun")
+    def test_ctrl_c_at_mpirun_is_not_told_as_another_signal_alone(self):
+        process = self.start(LARGE)
+        self.last_rank(process)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=600)
+        for told_of in re.findall("interrupted by .*", out + err):
+            self.assertRegex(told_of, r"interrupted by (SIGINT|SIGTERM \(mpirun sends it for Ctrl-C, too\)) ")
 
     def expect_results(self, process, number):
         result = self.end(process, NOT_CONVERGED)
         self.assertEqual(errors(result), [])
-        self.assertIn(f"NOT CONVERGED: interrupted by {number.name} in Uzawa iteration 1", result.stdout)
+        self.assertIn(f"NOT CONVERGED: interrupted by {told(number)} in Uzawa iteration 1", result.stdout)
         self.assertEqual(files(self.folder), RESULTS)
         summary = json.loads((self.folder / "out" / "beam.json").read_text())
         self.assertFalse(summary["converged"])
-        self.assertEqual(summary["reason"], f"interrupted by {number.name} in Uzawa iteration 1")
+        self.assertEqual(summary["reason"], f"interrupted by {told(number)} in Uzawa iteration 1")
         return summary
 
     def interrupt_solve(self, number, line, *arguments):
@@ -130,7 +145,7 @@ class Interrupt(RpcTestCase):
                 result = self.end(process, NOT_CONVERGED)
                 self.assertLess(time.monotonic() - sent, 5)
                 self.assertEqual(errors(result), [])
-                self.assertIn(f"NOT CONVERGED: interrupted by {number.name} in Uzawa iteration 1", result.stdout)
+                self.assertIn(f"NOT CONVERGED: interrupted by {told(number)} in Uzawa iteration 1", result.stdout)
                 self.assertEqual(files(self.folder), ["out/block.json"])
                 summary = json.loads((self.folder / "out" / "block.json").read_text())
                 self.assertIn("sparse factor", summary["solver_path"])

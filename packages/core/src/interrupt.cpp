@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <initializer_list>
 #include <memory>
 #include <thread>
@@ -21,10 +22,10 @@ namespace rpc
 namespace
 {
 
-std::atomic<int> received(0);            // on this rank; signal handlers set it
+std::atomic<int> received(0); // on this rank; signal handlers set it
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler must not wait for a lock");
-int agreed = 0;                          // on all ranks
-bool left_behind = false;                // work goes on
+int agreed = 0;           // on all ranks
+bool left_behind = false; // work goes on
 
 struct sigaction action_of(void (*handler)(int))
 {
@@ -77,7 +78,9 @@ bool interrupted(const Teuchos::Comm<int> &comm)
 
 std::string interruption()
 {
-  return std::string("interrupted by ") + (agreed == SIGINT ? "SIGINT" : "SIGTERM");
+  if (agreed == SIGINT) return "interrupted by SIGINT";
+  const bool below_mpirun = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr; // of Open MPI, which passes no SIGINT on
+  return std::string("interrupted by SIGTERM") + (below_mpirun ? " (mpirun sends it for Ctrl-C, too)" : "");
 }
 
 void throw_if_interrupted(const Teuchos::Comm<int> &comm, const std::string &state)

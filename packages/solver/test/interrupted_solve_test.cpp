@@ -37,7 +37,7 @@ TEST(InterruptedSolve, IsAResultAndNobodyTakesOver)
     EXPECT_TRUE(result.interrupted);
     EXPECT_TRUE(result.broken);
     EXPECT_FALSE(result.converged);
-    EXPECT_EQ(result.reason, "interrupted by SIGTERM");
+    EXPECT_EQ(result.reason, rpc::interruption());
   }
   EXPECT_TRUE(solver->counts().iterations.empty()) << "an interrupted solve does not count";
   EXPECT_EQ(solver->counts().fallback, "");

@@ -16,7 +16,8 @@ void install_interrupt_handlers();
 /// Whether any rank has been asked to stop: the same on every rank, and true forever once it is; collective on comm.
 bool interrupted(const Teuchos::Comm<int> &comm);
 
-/// "interrupted by SIGTERM", after interrupted() has been true.
+/// "interrupted by SIGTERM", after interrupted() has been true: what this process has got. Below Open MPI's mpirun that may have been
+/// SIGINT, and is said.
 std::string interruption();
 
 /// @throws rpc::Error (not_converged) on every rank if any of them has been asked to stop; collective on comm
