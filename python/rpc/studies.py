@@ -5,6 +5,7 @@ import copy
 import csv
 import hashlib
 import itertools
+import math
 import os
 import pathlib
 import subprocess
@@ -20,6 +21,7 @@ from .result import RECORD, load
 from .runs import launcher, start
 
 LASTING = {0, 4, 5}  # exit codes that come from the deck alone: such a run is not run again
+RESULTS = ("contact_force", "max_pressure", "contact_length", "contact_area", "energy_J")  # of the summary that study.csv has; of the force its size
 
 
 def study(deck, parameters, *, folder=None, workers=1, progress=True, ranks=1, program=None, timeout=None):
@@ -28,9 +30,10 @@ def study(deck, parameters, *, folder=None, workers=1, progress=True, ranks=1, p
     study(deck, {"Contact->Yield Stress": [8, 12, 16], "Contact->Gap": [0, 0.01]}) are six runs, the last name varies fastest;
     study(deck, [{"Contact->Yield Stress": 8, "Mesh->Cells": [80, 16]}, {...}]) are those of the list. Result.settings are the parameters of a run.
 
-    @param folder    keeps each run in a folder of its own, run-KEY, and study.csv with a row for each; a study that is called again with it, after
-                     Ctrl-C or with more parameters, does not run again what has ended with exit code 0, 4 or 5 and is the same: deck, file of the mesh,
-                     number of ranks and version of the program. None: temporary folders, which go with the results
+    @param folder    keeps each run in a folder of its own, run-KEY, and study.csv with a row for each: its parameters, how it ended and its main results,
+                     see RESULTS; a study that is called again with it, after Ctrl-C or with more parameters, does not run again what has ended with
+                     exit code 0, 4 or 5 and is the same: deck, file of the mesh, number of ranks and version of the program. None: temporary
+                     folders, which go with the results
     @param workers   runs at a time, > 0
     @param progress  a line on standard error for each run that has ended
     @param ranks, program, timeout  of each run, see run()
@@ -138,14 +141,36 @@ def _kept(folder):
 def _index(path, rows, results):
     """A table of all runs, for people and spreadsheets."""
     names = list(dict.fromkeys(name for row in rows for name in row))
+    main = [_main_results(result) for result in results]
+    columns = [f"{key}{end}" for key in RESULTS for end in ("", "_unit", "_error_bar") if any(key in found for found in main)]
     try:
         with open(path, "w", newline="") as file:
             table = csv.writer(file)
-            table.writerow(["folder", "exit_code", *names])
-            for row, result in zip(rows, results):
-                table.writerow([result.folder.name, result.code, *(_text(row[name], name) if name in row else "" for name in names)])
+            table.writerow(["folder", "exit_code", *names, "seconds", *columns, "reason"])
+            for row, result, found in zip(rows, results, main):
+                seconds = "" if result.seconds is None else f"{result.seconds:.3g}"
+                table.writerow([result.folder.name, result.code, *(_text(row[name], name) if name in row else "" for name in names), seconds,
+                                *(found.get(column, "") for column in columns), result.message])
     except OSError as error:
         raise Error(f'study: cannot write "{path}": {error.strerror}') from None
+
+
+def _main_results(result):
+    """{column of study.csv: number or unit} of a run that has left any."""
+    try:
+        summary = result.summary
+    except Error:
+        return {}
+    found = {}
+    for key in RESULTS:
+        entry = summary.get("results", {}).get(key) if summary.get("time") is not None else None
+        if entry is None:
+            continue
+        value, bar = entry["value"], entry["error_bar"]
+        found[key] = math.hypot(*value) if isinstance(value, list) else value
+        found[f"{key}_unit"] = entry["unit"]
+        found[f"{key}_error_bar"] = "" if bar is None else bar
+    return found
 
 
 def _text(value, path):

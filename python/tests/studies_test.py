@@ -76,7 +76,28 @@ class Studies(TestCase):
         self.study(beam(), {YIELD: [4]}, **options)
         self.assertEqual(self.runs(), 1)
         with open(self.folder / "study" / "study.csv", newline="") as file:
-            self.assertEqual(list(csv.reader(file)), [["folder", "exit_code", YIELD], [again[0].folder.name, "0", "4"]])
+            rows = list(csv.DictReader(file))
+        self.assertEqual([[row[name] for name in ("folder", "exit_code", YIELD)] for row in rows], [[again[0].folder.name, "0", "4"]])
+
+    def test_the_table_has_the_main_results_of_each_run(self):
+        results, _ = self.study(beam(Adapt={"Estimate Error": True}), {YIELD: [2, "x*", 4]}, folder=self.folder / "study")
+        with open(self.folder / "study" / "study.csv", newline="") as file:
+            table = csv.DictReader(file)
+            rows = list(table)
+        self.assertEqual(table.fieldnames[:4], ["folder", "exit_code", YIELD, "seconds"])
+        self.assertEqual(table.fieldnames[-1], "reason")
+        self.assertNotIn("contact_area", table.fieldnames)  # the body is plane
+        self.assertEqual([row["exit_code"] for row in rows], ["0", "2", "0"])
+        self.assertEqual([row["reason"] for row in rows], ["", results[1].message, ""])
+        self.assertEqual({rows[1][name] for name in table.fieldnames[4:-1]}, {""})
+        for row, result, force in zip(rows[::2], results[::2], (10, 20)):
+            told = result.summary["results"]
+            self.assertAlmostEqual(float(row["contact_force"]), force, delta=1e-9)
+            for key in ("max_pressure", "contact_length", "energy_J"):
+                self.assertEqual((float(row[key]), row[key + "_unit"]), (told[key]["value"], told[key]["unit"]))
+            self.assertEqual(float(row["energy_J_error_bar"]), told["energy_J"]["error_bar"])
+            self.assertEqual(row["contact_force_error_bar"], "")  # one mesh shows none
+            self.assertGreater(float(row["seconds"]), 0)
 
     def test_a_run_that_was_interrupted_is_run_again(self):
         logs = f"'{self.folder}'/study/run-*/deck.log"
