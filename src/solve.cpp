@@ -28,6 +28,28 @@ std::string load_hint(const Scene &scene, const ExitCode code, const std::string
   return load.empty() ? "" : " " + load + ".";
 }
 
+/// A number of which two digits are known.
+std::string two_digits(const double value)
+{
+  const double unit = std::pow(10., std::max(0., std::floor(std::log10(std::max(value, 1.))) - 1));
+  return std::to_string(std::llround(std::round(value / unit) * unit));
+}
+
+/// When the target is met, as the last meshes tell.
+std::string target_text(const adapt::Forecast &forecast, const adapt::AdaptOptions &adapt)
+{
+  if (forecast.misses_contact)
+    return "when the target is met is not known yet: most of the error is contact that this mesh does not see";
+  const std::string dofs = two_digits(forecast.last_dofs) + " dofs",
+                    seconds = two_digits(std::max(1., forecast.seconds)) + " s";
+  const bool too_many = forecast.last_dofs > static_cast<double>(adapt.max_dofs);
+  const std::string when =
+      too_many ? ", more than \"Adapt->Max Dofs\" = " + std::to_string(adapt.max_dofs) : " in about " + seconds;
+  return "the target with about " + dofs + when +
+         (forecast.told_before > 0 ? "; the mesh before told " + two_digits(forecast.told_before) + " dofs"
+                                   : ", as one mesh tells");
+}
+
 } // namespace
 
 Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console,
@@ -72,11 +94,8 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
   if (!several_steps) listener.step.uzawa = [&](const analysis::UzawaResult &result) { table->uzawa(result); };
   listener.estimate = [&](const Solution &solution) { print_estimate(console, scene, solution); };
   listener.forecast = [&](const adapt::Forecast &forecast) {
-    console << "next mesh: about " << std::llround(forecast.dofs) << " dofs; the target ";
-    if (forecast.last_dofs > static_cast<double>(scene.adapt.max_dofs))
-      console << "takes more than \"Adapt->Max Dofs\" = " << scene.adapt.max_dofs << ", as it looks" << std::endl;
-    else
-      console << "in about " << std::max(1LL, std::llround(forecast.seconds)) << " s" << std::endl;
+    console << "next mesh: about " << std::llround(forecast.dofs) << " dofs; " << target_text(forecast, scene.adapt)
+            << std::endl;
   };
   listener.note = [&](const std::string &note) { notes.add(note); };
   listener.load_step = [&](const analysis::Solution &solution) {

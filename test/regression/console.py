@@ -217,6 +217,19 @@ class Told(ConsoleTestCase):
         self.run_deck(deck=TWO_SIDES)
         self.assertRegex(self.end["largest pressure"], r' m on "(bottom|right)"')
 
+    def test_forecasts_tell_unknowns_and_what_the_mesh_before_told(self):
+        self.run_deck("--set=Adapt->Target Relative Error=0.001", deck="beam_adaptive.xml")
+        told = re.findall(r"^next mesh: about (\d+) dofs; the target with about (\d+) dofs in about (\d+) s(.*)$", self.stdout, re.MULTILINE)
+        cycles = self.summary["adaptation"]["cycles"]
+        self.assertEqual(len(told), len(cycles) - 1)
+        self.assertGreaterEqual(len(told), 2)
+        self.assertEqual(told[0][3], ", as one mesh tells")
+        for before, (_, _, _, end) in zip(told, told[1:]):
+            self.assertEqual(end, f"; the mesh before told {before[1]} dofs")
+        self.assertLess(abs(int(told[-1][1]) / cycles[-1]["dofs"] - 1), 0.5)  # of the last mesh
+        self.run_deck("--set=Adapt->Target Relative Error=0.001", "--set=Adapt->Max Dofs=3000", deck="beam_adaptive.xml", code=4)
+        self.assertIn('dofs, more than "Adapt->Max Dofs" = 3000', self.stdout)
+
     def test_without_an_estimate_one_line_tells_how_to_have_error_bars(self):
         results = self.run_deck(SMALL)
         self.assertNotIn("±", self.stdout)

@@ -132,13 +132,14 @@ std::size_t best_of(const std::vector<Cycle> &cycles)
 }
 
 /// Of meshes that grow alike, from the next one to the last.
-double seconds_for(const Forecast &forecast, const Cycle &last)
+/// @param per_dof  what an unknown of the last mesh took [s]: mesh, matrix, solves, estimate and the plan before it
+double seconds_for(const Forecast &forecast, const double per_dof)
 {
   const double growth =
       forecast.meshes > 1 ? std::pow(forecast.last_dofs / forecast.dofs, 1. / (forecast.meshes - 1)) : 1;
   double dofs = 0, of_mesh = forecast.dofs;
   for (int k = 0; k < forecast.meshes; ++k, of_mesh *= growth) dofs += of_mesh;
-  return dofs * last.seconds / static_cast<double>(last.dofs);
+  return dofs * per_dof;
 }
 
 /// Why no other mesh follows one that is solved.
@@ -148,18 +149,20 @@ std::string why_ended(const Error &failure, const Comm &comm)
 }
 
 /// The mesh after that of a solution. Meshes that come out larger than allowed are made again, with larger cells. Collective.
-/// @param last         of the cycles
+/// @param forecast     of the mesh before, if there was one; becomes that of this one
+/// @param per_dof      see seconds_for()
 /// @param[out] reason  why there is none
-std::optional<analysis::MadeMesh> next_mesh(MeshPlanner &planner, const Solution &s, const Cycle &last,
-                                            const Listener &listener, analysis::PhaseSeconds &seconds,
-                                            std::string &reason)
+std::optional<analysis::MadeMesh> next_mesh(MeshPlanner &planner, const Solution &s, Forecast &forecast,
+                                            const double per_dof, const Listener &listener,
+                                            analysis::PhaseSeconds &seconds, std::string &reason)
 {
   const RCP<const Comm> comm = s.discretization.mesh->owned_nodes->getComm();
-  Forecast forecast;
+  forecast.told_before = forecast.misses_contact ? 0 : forecast.last_dofs;
+  forecast.misses_contact = s.estimate->misses_contact();
   auto options = planner.next(s.discretization, *s.estimate, estimated_energy(s), forecast, reason);
-  if (options && listener.forecast) {
-    forecast.seconds = seconds_for(forecast, last);
-    listener.forecast(forecast);
+  if (options) {
+    forecast.seconds = seconds_for(forecast, per_dof);
+    if (listener.forecast) listener.forecast(forecast);
   }
   try {
     while (options) {
@@ -189,6 +192,8 @@ Solution solve_adaptively(const Task &task, const Solution *const earlier, const
   std::optional<Solution> last, best;
   std::string hint;
   analysis::PhaseSeconds seconds;
+  Forecast forecast;
+  double planned_from = Teuchos::Time::wallTime() - mesh->seconds; // when the present mesh's plan began
   while (mesh) {
     const double start = Teuchos::Time::wallTime() - mesh->seconds;
     std::optional<Solution> next;
@@ -226,7 +231,10 @@ Solution solve_adaptively(const Task &task, const Solution *const earlier, const
       adaptation.reason = "there were \"Adapt->Max Cycles\" = " + std::to_string(task.adapt.max_cycles) + " meshes";
       break;
     }
-    mesh = next_mesh(planner, *last, cycles.back(), listener, seconds, adaptation.reason);
+    const double now = Teuchos::Time::wallTime();
+    const double per_dof = (now - planned_from) / static_cast<double>(cycles.back().dofs);
+    planned_from = now;
+    mesh = next_mesh(planner, *last, forecast, per_dof, listener, seconds, adaptation.reason);
   }
   if (!adaptation.reached && !hint.empty() && !interrupted(*comm)) adaptation.reason += ". " + hint;
   adaptation.errors = observed_errors({cycles.begin(), cycles.begin() + best_of(cycles) + 1}, fixed_by_load(task.model),

@@ -25,10 +25,13 @@ struct Solution : analysis::Solution {
 
 /// What is still to be done for the target, as the last mesh tells.
 struct Forecast {
-  int meshes = 0;       ///< > 0
-  double dofs = 0;      ///< of the next one
-  double last_dofs = 0; ///< of the last one, by the order of the elements
-  double seconds = 0;   ///< for all of them, if each unknown takes as long as on the last mesh
+  int meshes = 0;         ///< > 0
+  double dofs = 0;        ///< of the next one
+  double last_dofs = 0;   ///< of the last one, if the error falls as the order of the elements lets it
+  double seconds = 0;     ///< for all of them, if each unknown takes as long as on the last mesh, from mesh to plan
+  double told_before = 0; ///< last_dofs of the mesh before; 0: there was none that saw the contact
+  bool misses_contact =
+      false; ///< contact that no contact point sees is most of the error: last_dofs and seconds tell nothing
 };
 
 /// Reports during the run; empty functions are not called. All are called on all ranks. `solved` is not called: the error is
