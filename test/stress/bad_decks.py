@@ -86,7 +86,8 @@ def unit(rng, text):
     name = rng.choice(["GPa", "MPa", "kN/m^2", "N/mm2", "mm", "kN", "psi", "kN/m3"])
     wrong = m[2] + rng.choice([" ", ""]) + name
     new, line = put(text, m, wrong, 2)
-    return new, line, [f'"{wrong}"', (f'without "{name}"', f'"{name}" is a unit of'), ("with mm and N", "is wanted [")]
+    no_unit = "is a number without a unit: write "
+    return new, line, [f'"{wrong}"', (f'without "{name}"', f'"{name}" is a unit of', no_unit), ("with mm and N", "is wanted [", no_unit, f'"{name}": 0.')]
 
 
 def unit_in_expression(rng, text):
@@ -216,7 +217,7 @@ def type_name(rng, text):
 
 
 def no_type(rng, text):
-    m = pick(rng, text, r'( type="(?:double|string|int)")')
+    m = pick(rng, text, r'<Parameter name="[^"]*"( type="(?:double|string|int)")')
     return *put(text, m, rng.choice(["", m[1].replace("type", "typ")])), ["has no type=", 'rite type="']
 
 
@@ -441,7 +442,7 @@ def path_as_name(rng, text):
 
 
 def far_name(rng, text):
-    wrong, right = rng.choice([("Name", "named by its file"), ("Title", "named by its file"), ("Damping", "linear elastic"), ("Threads", "Valid here: "), ("Symmetry", "Valid here: ")])
+    wrong, right = rng.choice([("Name", "named by its file"), ("Title", "named by its file"), ("Damping", "linear elastic"), ("Threads", "OMP_NUM_THREADS"), ("Symmetry", "a side that does not move along its normal")])
     m = pick(rng, text, r'\n( *)<ParameterList name="Material">')
     return put(text, m, f'<Parameter name="{wrong}" type="string" value="1"/>\n' + m[1])[0], line_of(text, m.start(1)), [f'"{wrong}"', right, NOT + "Did you mean"]
 

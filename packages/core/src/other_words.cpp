@@ -109,6 +109,9 @@ const std::vector<std::pair<std::string, std::string>> words_of_others = {
     {"refinementlevel", "Mesh->Refinements"},
 };
 
+constexpr const char *processes_sentence = "How many processes run is no matter of the deck: several are started by "
+                                           "mpirun -n 4 rpc ..., and threads of a build for OpenMP by OMP_NUM_THREADS.";
+
 const std::vector<std::pair<std::string, std::string>> sentences_for_words = {
     {"density", density_sentence},
     {"massdensity", density_sentence},
@@ -121,6 +124,12 @@ const std::vector<std::pair<std::string, std::string>> sentences_for_words = {
     {"bulkmodulus", shear_sentence},
     {"lame", shear_sentence},
     {"frictionangle", "Coulomb's friction is \"Contact->Friction Coefficient\", the tangent of the angle of friction."},
+    {"threads", processes_sentence},
+    {"cores", processes_sentence},
+    {"processors", processes_sentence},
+    {"ranks", processes_sentence},
+    {"symmetry", "A plane of symmetry is a side that does not move along its normal: an entry of \"Dirichlet\" with "
+                 "that component, such as X = 0."},
     {"thickness", "A plane body has no thickness: forces are per length of its depth, in N/m with m and N."},
     {"cellsize", size_sentence},
     {"elementsize", size_sentence},

@@ -187,10 +187,15 @@ std::string remedy_for(const ParameterEntry &value, const ParameterEntry &model,
       !Teuchos::getValue<Array<std::string>>(value).empty())
     return " It takes one text, such as \"" + Teuchos::getValue<Array<std::string>>(value).front() +
            "\": write another entry for each further one.";
-  if (value.isList()) return "";
+  if (value.isList())
+    return Teuchos::getValue<Teuchos::ParameterList>(value).numParams() == 0
+               ? " There is no value: write one behind the colon."
+               : " It has one value, and no parameters in it: write them beside it.";
   const std::string text = text_of(value);
   const auto read = read_entry(text, &model);
   if (!read || choice_of(model)) return remedy_for(text, model, wanted);
+  if (model.isType<Array<int>>() && value.isType<Array<double>>()) // 8.0 prints as 8
+    return " Write whole numbers without a point: " + text + ", in YAML [" + text.substr(1, text.size() - 2) + "].";
   const std::string type = model.isType<Array<int>>()           ? "Array(int)"
                            : model.isType<Array<double>>()      ? "Array(double)"
                            : model.isType<Array<std::string>>() ? "Array(string)"

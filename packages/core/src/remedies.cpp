@@ -232,13 +232,21 @@ std::string number_remedy(const std::string &text, const Wanted &wanted)
             : *wanted.expression ? "or in XML type=\"string\", for it is an expression."
                                  : "this parameter takes a number, not an expression.");
   if (!number) return "";
+  static const std::regex hexadecimal(R"(0[xX][0-9a-fA-F]+)");
+  if (std::regex_match(text, hexadecimal))
+    return " Write " + std::to_string(std::strtoll(text.c_str(), nullptr, 16)) + ": decks have decimal digits.";
+  if (!std::isfinite(number->value))
+    return " Write a number of at most " + number_text(std::numeric_limits<double>::max()) + ".";
   if (number->unit.empty()) {
     std::string other;
     static const std::regex ambiguous(R"([-+]?[1-9]\d{0,2},\d{3})");
     if (std::regex_match(plain(text), ambiguous))
       other = ", or " + number_text(1000 * number->value) + " if the comma stands between thousands";
-    const bool comma = text.find(',') != std::string::npos;
-    return " Write " + number_text(number->value) + other + (comma ? ": decks have a decimal point." : ".");
+    const auto commas = std::count(text.begin(), text.end(), ',');
+    return " Write " + number_text(number->value) + other +
+           (commas > 1    ? ": decks have no marks between thousands."
+            : commas == 1 ? ": decks have a decimal point."
+                          : ".");
   }
   const WrittenUnit *const unit = unit_named(number->unit);
   const std::string alone = " Write the number alone, without \"" + number->unit + "\"";
@@ -247,6 +255,7 @@ std::string number_remedy(const std::string &text, const Wanted &wanted)
   if (!unit) return alone + ": it counts in the deck's units, see \"Units\".";
   if (const std::string other = other_quantity(*number, *unit, wanted); !other.empty()) return other;
   const double value = number->value * unit->factor;
+  if (value == 0) return alone + ": 0.";
   if (unit->force == 0 && unit->length == 0) return alone + ": " + rounded(value) + ".";
   return alone + ", in the deck's units (see \"Units\"): " + rounded(value) + " with m and N, " +
          rounded(value * std::pow(1000., unit->length)) + " with mm and N" +
@@ -268,6 +277,8 @@ std::string array_remedy(const std::string &text, const bool whole)
 {
   std::string inside = plain(text);
   inside = without_ends(inside, "{}[]()<> ");
+  static const std::regex before_unit(R"((\d)\s+([A-Za-z%]))");
+  if (!whole) inside = std::regex_replace(inside, before_unit, "$1$2");
   static const std::regex between_products(R"((\d)\s*x\s*(?=\d))");
   inside = std::regex_replace(inside, between_products, "$1;");
   // Commas are decimal ones where something else stands between the numbers.
@@ -286,6 +297,8 @@ std::string array_remedy(const std::string &text, const bool whole)
     if (!product && !number) return number_remedy(text);
     if (!product && !number->unit.empty()) has_units = true;
     const double given = product ? *product : number->value, value = whole ? std::round(given) : given;
+    if (whole && std::abs(value) > std::numeric_limits<int>::max())
+      return " Write numbers of at most " + std::to_string(std::numeric_limits<int>::max()) + ".";
     were_whole &= value == given;
     items.push_back(number_text(value));
   }

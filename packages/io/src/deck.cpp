@@ -36,6 +36,17 @@ namespace
 using Teuchos::ParameterList;
 using Teuchos::XMLObject;
 
+/// Lines end by \n alone, whatever an editor has written.
+void with_plain_line_ends(std::string &text)
+{
+  std::size_t to = 0;
+  for (std::size_t from = 0; from < text.size(); ++from) {
+    if (text[from] == '\r' && from + 1 < text.size() && text[from + 1] == '\n') continue;
+    text[to++] = text[from] == '\r' ? '\n' : text[from];
+  }
+  text.resize(to);
+}
+
 std::string read_text(const std::string &path)
 {
   const std::unique_ptr<std::FILE, int (*)(std::FILE *)> file(std::fopen(path.c_str(), "rb"), std::fclose);
@@ -45,6 +56,10 @@ std::string read_text(const std::string &path)
   while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file.get())) text.append(buffer, count);
   RPC_REQUIRE(!std::ferror(file.get()), "deck: cannot read \"" << path << "\": " << std::strerror(errno));
   if (text.rfind("\xEF\xBB\xBF", 0) == 0) text.erase(0, 3); // a mark that some editors put before the text
+  const bool utf_16 = text.rfind("\xFF\xFE", 0) == 0 || text.rfind("\xFE\xFF", 0) == 0;
+  RPC_REQUIRE(!utf_16,
+              "deck: \"" << path << "\" is written in UTF-16. Save it as UTF-8, the encoding of that name in editors");
+  with_plain_line_ends(text);
   RPC_REQUIRE(!trimmed(text).empty(), "deck: \"" << path << "\" is empty");
   return text;
 }
@@ -108,9 +123,14 @@ constexpr const char *no_list = "it has no list of parameters. Write its name, s
   std::string reason = one_line(what);
   static const std::regex anonymous(R"( in list "ANONYMOUS"$)"); // the root that a deck need not name
   reason = std::regex_replace(reason, anonymous, "");
-  if (reason.empty()) reason = "malformed";
+  if (reason.empty()) reason = "it is not written as a deck is. Look for a bracket, quote or comma that is missing";
   if (reason == "Error!") reason = no_list; // of Teuchos, where a value stands in the place of a list
-  if (reason.rfind("Expected one of", 0) == 0) reason += " (in YAML a text with special characters needs quotes)";
+  static const std::regex unexpected(R"(Expected one of .*Got: (.*))");
+  std::smatch got;
+  if (std::regex_match(reason, got, unexpected))
+    reason = "\"" + trimmed(got[1].str()) +
+             "\" cannot stand where it does. Look for a comma, bracket or quote that is missing before it; a text with "
+             "such signs needs quotes";
   throw Error(ExitCode::bad_input, "deck: \"" + path + "\"" + where + ": " + reason);
 }
 
@@ -194,11 +214,71 @@ std::string with_infinities(const std::string &text)
   return result;
 }
 
-ParameterList read_yaml(const std::string &path, const std::string &given)
+constexpr const char *byte_mark = "~~"; // before two hexadecimal digits: Teuchos reads no letters but those of ASCII
+
+std::string with_bytes_marked(const std::string &text)
 {
-  const std::string whole = with_infinities(given);
+  static constexpr char digits[] = "0123456789ABCDEF";
+  std::string marked;
+  for (const unsigned char c : text) {
+    if (c < 0x80)
+      marked += static_cast<char>(c);
+    else
+      marked += byte_mark + std::string{digits[c / 16], digits[c % 16]};
+  }
+  return marked;
+}
+
+std::string with_bytes(const std::string &marked)
+{
+  std::string text;
+  for (std::size_t n = 0; n < marked.size(); ++n) {
+    if (marked.compare(n, 2, byte_mark) == 0 && n + 3 < marked.size() && std::isxdigit(marked[n + 2])) {
+      text += static_cast<char>(std::stoi(marked.substr(n + 2, 2), nullptr, 16));
+      n += 3;
+    } else {
+      text += marked[n];
+    }
+  }
+  return text;
+}
+
+/// A list with the letters that with_bytes_marked() has marked, in names and texts.
+ParameterList with_bytes(const ParameterList &marked)
+{
+  ParameterList list(with_bytes(marked.name()));
+  for (auto at = marked.begin(); at != marked.end(); ++at) {
+    const std::string name = with_bytes(marked.name(at));
+    const Teuchos::ParameterEntry &entry = marked.entry(at);
+    if (entry.isList()) {
+      list.sublist(name) = with_bytes(Teuchos::getValue<ParameterList>(entry));
+      list.sublist(name).setName(list.name() + "->" + name);
+    } else if (entry.isType<std::string>()) {
+      list.set(name, with_bytes(Teuchos::getValue<std::string>(entry)));
+    } else {
+      list.setEntry(name, entry);
+    }
+  }
+  return list;
+}
+
+/// Refuses an outermost list without entries that has those beside it that are to be its own, as a deck has whose lines have lost their blanks.
+void check_outermost(const std::string &path, const ParameterList &list, const ParameterList &valid)
+{
+  if (list.numParams() == 0 || valid.isParameter(list.name(list.begin()))) return;
+  const Teuchos::ParameterEntry &first = list.entry(list.begin());
+  if (first.isList() && Teuchos::getValue<ParameterList>(first).numParams() == 0)
+    refuse_line(path, 1,
+                "\"" + list.name(list.begin()) +
+                    "\" has no entries, for those below it are not indented. Indent them by two blanks, or remove this "
+                    "line.");
+}
+
+ParameterList read_yaml(const std::string &path, const std::string &given, const ParameterList &valid)
+{
+  read_yaml_lines(path, given);
+  const std::string whole = with_bytes_marked(with_infinities(given));
   check_depth(path, whole, true);
-  read_yaml_lines(path, whole);
   const std::vector<std::string> lines = lines_of(whole);
   static const std::regex nothing(R"(\s*(#.*)?|---\s*|\.\.\.\s*|%.*)");
   const auto is_nothing = [](const std::string &line) { return std::regex_match(line, nothing); };
@@ -215,7 +295,11 @@ ParameterList read_yaml(const std::string &path, const std::string &given)
     text += "\n";
   }
   try {
-    return *Teuchos::getParametersFromYamlString(text);
+    const ParameterList list = with_bytes(*Teuchos::getParametersFromYamlString(text));
+    if (anonymous) check_outermost(path, list, valid);
+    return list;
+  } catch (const Error &) {
+    throw;
   } catch (const std::exception &error) {
     refuse(path, error, anonymous ? 1 : 0);
   }
@@ -337,7 +421,7 @@ std::string with_place(const std::string &message, const std::string &path, cons
 ParameterList read_deck(const std::string &path, const Teuchos::Comm<int> &comm, const ParameterList &valid)
 {
   const std::string text = text_of_root(comm, ExitCode::bad_input, [&] { return read_text(path); });
-  return is_yaml(path) ? read_yaml(path, text) : read_xml(path, text, valid);
+  return is_yaml(path) ? read_yaml(path, text, valid) : read_xml(path, text, valid);
 }
 
 } // namespace rpc::io

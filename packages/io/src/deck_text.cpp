@@ -91,7 +91,7 @@ void refuse_line(const std::string &path, const int line, const std::string &rea
   throw Error(ExitCode::bad_input, "deck: \"" + path + "\", line " + std::to_string(line) + ": " + reason);
 }
 
-std::string format_remedy(const std::string &text)
+std::string other_format(const std::string &text)
 {
   static const std::vector<std::pair<std::regex, const char *>> formats = {
       {std::regex(R"(\s*\*[A-Za-z*])"),
@@ -109,11 +109,22 @@ std::string format_remedy(const std::string &text)
       {std::regex(R"(\s*(#.*\n\s*)*(subsection|set)\s)"),
        "This looks like a parameter file of deal.II, which rpc does not read."},
       {std::regex(R"(\s*(import|from)\s)"), "This looks like a program in Python."},
-      {std::regex(R"(\s*\{)"), "This looks like JSON, which is read as YAML: name the file .yaml."},
-      {std::regex(R"(\s*(#.*\n\s*|---\s*\n)*[A-Za-z][^<>\n]*:\s)"), "This looks like YAML: name the file .yaml."}};
+  };
   const std::string head = text.substr(0, 2000); // std::regex takes stack with the length
   for (const auto &[format, remedy] : formats)
     if (std::regex_search(head, format, std::regex_constants::match_continuous)) return remedy;
+  return "";
+}
+
+std::string format_remedy(const std::string &text)
+{
+  static const std::regex json(R"(\s*\{)"), yaml(R"(\s*(#.*\n\s*|---\s*\n)*[A-Za-z][^<>\n]*:\s)");
+  if (const std::string other = other_format(text); !other.empty()) return other;
+  const std::string head = text.substr(0, 2000);
+  if (std::regex_search(head, json, std::regex_constants::match_continuous))
+    return "This looks like JSON, which is read as YAML: name the file .yaml.";
+  if (std::regex_search(head, yaml, std::regex_constants::match_continuous))
+    return "This looks like YAML: name the file .yaml.";
   return "A deck in XML begins with <ParameterList name=\"...\">; rpc --new writes one to start from.";
 }
 

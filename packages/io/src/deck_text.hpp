@@ -25,7 +25,9 @@ bool is_infinite(const std::string &text);
 /// @throws rpc::Error (bad_input): "deck: "path", line n: reason"
 [[noreturn]] void refuse_line(const std::string &path, int line, const std::string &reason);
 
-/// What to do with a text that is no deck: what program it looks like an input of.
+/// What to do with a text of another program, which it looks like an input of; empty where it looks like none.
+std::string other_format(const std::string &text);
+/// The same of a text that is no deck in XML, never empty.
 std::string format_remedy(const std::string &text);
 
 } // namespace rpc::io

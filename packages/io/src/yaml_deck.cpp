@@ -3,6 +3,7 @@
 
 #include "deck_text.hpp"
 #include "rpc/core/remedies.hpp"
+#include "yaml_signs.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -27,6 +28,13 @@ std::string without_quotes(const std::string &name)
 {
   const bool quoted = name.size() > 1 && (name.front() == '"' || name.front() == '\'') && name.back() == name.front();
   return quoted ? name.substr(1, name.size() - 2) : name;
+}
+
+std::string without_comment(const std::string &value)
+{
+  static const std::regex comment(R"(\s#)");
+  std::smatch found;
+  return std::regex_search(value, found, comment) ? trimmed(value.substr(0, found.position())) : value;
 }
 
 /// Number of names at the outermost level.
@@ -87,6 +95,9 @@ private:
         refuse(line_, "\"" + content +
                           "\" is indented, and no list is open. Write the name of the outermost list above it, "
                           "such as deck:");
+      if (content.rfind("\u00a0", 0) == 0)
+        refuse(line_, "the line begins with a blank that does not break lines, as word processors and web pages have "
+                      "them. Write blanks of the keyboard.");
       if (content[0] == '-' && (content.size() == 1 || content[1] == ' ')) {
         refuse_items_with_names(content);
         skipped_indent_ = indent;
@@ -125,8 +136,14 @@ private:
     if (indent == 0 && (content[0] == '{' || content[0] == '[')) return read_flow(""); // JSON
     const std::size_t mark = colon(at_, end);
     const bool quoted = content[0] == '"' || content[0] == '\'';
+    if (quoted && content.find(content[0], 1) == std::string::npos)
+      refuse(line_, "the quote at the beginning of " + content +
+                        " does not close. Write a second one behind the name, or none.");
     if (mark == std::string::npos || (!quoted && text_.find_first_of("{[", at_) < mark)) refuse_without_colon(content);
-    const std::string name = without_quotes(trimmed(text_.substr(at_, mark - at_)));
+    const std::string written = trimmed(text_.substr(at_, mark - at_));
+    if (!quoted && (written.find('"') != std::string::npos || written.find(" = ") != std::string::npos))
+      refuse_without_colon(content);
+    const std::string name = without_quotes(written);
     while (open_.back().indent >= indent) open_.pop_back();
     OpenList &list = open_.back();
     if (list.entries_indent >= 0 && list.entries_indent != indent)
@@ -149,12 +166,13 @@ private:
     if (!rest.empty() && rest[0] != '#') {
       skipped_indent_ = indent;
       refuse_percent(rest, full, line_);
-      const bool in_quotes = rest[0] == '"' || rest[0] == '\'';
-      skipped_is_plain_ = in_quotes ? rest.find(rest[0], 1) != std::string::npos : !std::strchr("|>&*!", rest[0]);
+      const bool has_quotes = rest[0] == '"' || rest[0] == '\'';
+      skipped_is_plain_ = has_quotes ? rest.find(rest[0], 1) != std::string::npos : !std::strchr("|>&*!", rest[0]);
       if ((rest[0] == '"' || rest[0] == '\'') && rest.find(rest[0], 1) == std::string::npos &&
           !closes_below(rest[0], end))
         refuse(line_, "the quote of \"" + shown(full) + "\" = " + rest + " does not close. Write " + rest[0] +
                           " behind the value.");
+      refuse_signs(has_quotes ? rest : without_comment(rest), full, line_);
     }
     next_line(end);
   }
@@ -180,6 +198,23 @@ private:
                      (remedy.empty() ? " Write a number alone, or quotes around a text." : remedy));
   }
 
+  void refuse_signs(const std::string &value, const std::string &path, const int line) const
+  {
+    const std::string reason = wrong_signs(shown(path), value);
+    if (!reason.empty()) refuse(line, reason);
+  }
+
+  /// What stands behind the end of a list in brackets.
+  void refuse_rest(const std::string &path)
+  {
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    const std::string rest = trimmed(text_.substr(at_, end - at_));
+    if (!rest.empty() && rest[0] != '#')
+      refuse(line_, "\"" + rest + "\" stands behind " +
+                        (path.empty() ? "the end of the deck" : "the end of \"" + shown(path) + "\"") +
+                        ". Remove it, or write it on a line of its own.");
+  }
+
   bool closes_below(const char quote, const std::size_t end) const
   {
     return text_.find(quote, end) != std::string::npos;
@@ -192,6 +227,9 @@ private:
         words(R"(([A-Za-z][A-Za-z' ]*)\s+(\S+))");
     static const std::regex unit(R"(([A-Za-z][A-Za-z' ]*?)\s*\[[^\],\d][^\],]*\]\s*:\s+(.*))");
     std::smatch found;
+    if (content[0] == '*' || lines_.empty())
+      if (const std::string other = other_format(lines_.empty() ? text_ : content); !other.empty())
+        refuse(line_, "\"" + content + "\" is no entry, which is a name, a colon, a blank and a value. " + other);
     if (std::regex_match(content, found, unit))
       refuse(line_, "\"" + content + "\" has a unit in its name. Write " + found[1].str() + ": " + found[2].str() +
                         ", in the deck's units, see \"Units\".");
@@ -264,19 +302,24 @@ private:
       else if (text_[at_] == '{' || text_[at_] == '[')
         read_flow(path, depth + 1);
       else
-        read_flow_text(",]}");
+        refuse_signs(read_flow_text(",]}"), path, line_);
       needs_comma = true;
     }
     ++at_;
-    if (depth == 0) next_line(std::min(text_.find('\n', at_), text_.size()));
+    if (depth > 0) return;
+    refuse_rest(path);
+    next_line(std::min(text_.find('\n', at_), text_.size()));
   }
 
   std::string read_flow_entry(const std::string &path, const std::string &last, const int depth)
   {
     const int line = line_;
+    const std::size_t begin = at_;
     const std::string name = without_quotes(read_flow_text(",]}", true));
     skip_flow_blanks();
     if (at_ >= text_.size() || text_[at_] != ':') {
+      refuse_value_in_braces(path, begin, line);
+      refuse_comma_within(path, last, begin, line);
       static const std::regex digits(R"(\d+([eE][-+]?\d+)?)"), number(R"([-+]?\d+)");
       const bool comma = std::regex_match(name, digits) && std::regex_match(last, number);
       refuse(line, "\"" + name + "\" in the \"{\" of \"" + shown(path) + "\" lacks a colon with a blank behind it." +
@@ -294,7 +337,43 @@ private:
     }
     const std::string value = read_flow_text(",}");
     refuse_percent(value, full, line);
+    refuse_signs(value, full, line);
     return value;
+  }
+
+  /// "{2.0, 1.0}" or "{-2*x}", which have no names.
+  /// @param begin  of the first entry
+  void refuse_value_in_braces(const std::string &path, const std::size_t begin, const int line) const
+  {
+    const std::size_t end = text_.find_first_of("}\n", begin);
+    if (end == std::string::npos || text_[end] != '}' || text_[text_.find_last_not_of(' ', begin - 1)] != '{') return;
+    const std::string content = trimmed(text_.substr(begin, end - begin));
+    if (content.find(": ") != std::string::npos) return;
+    static const std::regex number(R"([-+\d.].*)");
+    const bool several = content.find(',') != std::string::npos;
+    const std::string start = "{" + content + "} of \"" + shown(path) + "\" has no names. Write " + last_name(path);
+    if (several && std::regex_match(content, number))
+      refuse(line, start + ": [" + content + "] for a list of numbers.");
+    if (!several && content.find_first_of("+-*/()0123456789") != std::string::npos)
+      refuse(line, start + ": " + (content.find_first_of("*/(") == std::string::npos ? content : in_quotes(content)) +
+                       " for a value.");
+  }
+
+  /// "{Y: max(x, 1)}", whose comma ends the entry.
+  /// @param last   value before the comma
+  /// @param begin  of what follows it
+  void refuse_comma_within(const std::string &path, const std::string &last, const std::size_t begin,
+                           const int line) const
+  {
+    const auto open = [](const std::string &text) {
+      return std::count(text.begin(), text.end(), '(') - std::count(text.begin(), text.end(), ')');
+    };
+    if (open(last) <= 0) return;
+    std::string whole = last + ",";
+    if (text_[begin - 1] == ' ') whole += ' ';
+    for (std::size_t at = begin; at < text_.size() && text_[at] != '\n' && open(whole) > 0; ++at) whole += text_[at];
+    refuse(line, "the comma of " + last + ", ... in the \"{\" of \"" + shown(path) +
+                     "\" ends the value. A value with commas needs quotes: write " + in_quotes(whole));
   }
 
   std::map<std::string, int> without_root() const

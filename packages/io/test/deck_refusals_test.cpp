@@ -110,6 +110,8 @@ TEST_F(Refusal, OfAttributesSaysWhatToWrite)
   expect_xml("value=\"0.1\"", "value=\"x<2 ? x : 0\"", 9, "Write value=\"x&lt;2 ? x : 0\".");
   expect_xml("value=\"0.1\"", "value=\"x > 2 && y > 1\"", 9, "is written &amp;");
   expect_xml("type=\"string\" value=\"bottom\"", "typ=\"string\" value=\"bottom\"", 8, "write type=\"string\"");
+  expect_xml("type=\"string\" value=\"bottom\"", "type=\"string\" unit=\"mm\" value=\"bottom\"", 8,
+             "\"Contact->Side\" has unit=\"mm\", which is not read. Remove it: numbers count in the deck's units");
   expect_xml("type=\"string\" value=\"bottom\"", "value=\"bottom\"", 8,
              "\"Contact->Side\" has no type=. Write type=\"string\".");
   expect_xml("type=\"string\" value=\"bottom\"", "type=\"sting\" value=\"bottom\"", 8, "Did you mean \"string\"?");

@@ -100,6 +100,21 @@ std::string found_file(const std::string &name, const std::string &folder)
   bool has_folder = false;
   for (const std::string &each : folders) has_folder |= each.empty() || std::filesystem::is_directory(each, ignored);
   if (!has_folder) text += " There is no folder \"" + own_folder.string() + "\".";
+  if (name.find('\\') != std::string::npos) {
+    std::string slashes = name;
+    std::replace(slashes.begin(), slashes.end(), '\\', '/');
+    static const std::regex drive(R"(([A-Za-z]):(/.*))");
+    std::smatch part;
+    text += " Write / for \\";
+    if (std::regex_match(slashes, part, drive)) {
+      text += ", and the drive as this system has it: below WSL /mnt/";
+      text += static_cast<char>(std::tolower(static_cast<unsigned char>(part[1].str()[0])));
+      slashes = part[2];
+    } else {
+      text += ": ";
+    }
+    throw Error(ExitCode::bad_input, text + slashes);
+  }
   const std::string meant = file_remedy(std::filesystem::path(name).filename().string(), mesh_files(folders));
   throw Error(ExitCode::bad_input,
               text + (meant.empty() ? " Write its path as seen from the deck, or in full." : meant));
