@@ -142,7 +142,7 @@ def _index(path, rows, results):
     """A table of all runs, for people and spreadsheets."""
     names = list(dict.fromkeys(name for row in rows for name in row))
     main = [_main_results(result) for result in results]
-    columns = [f"{key}{end}" for key in RESULTS for end in ("", "_unit", "_error_bar") if any(key in found for found in main)]
+    columns = list(dict.fromkeys(column for found in main for column in found))
     try:
         with open(path, "w", newline="") as file:
             table = csv.writer(file)
@@ -156,7 +156,7 @@ def _index(path, rows, results):
 
 
 def _main_results(result):
-    """{column of study.csv: number or unit} of a run that has left any."""
+    """{column of study.csv: number or unit} of a run that has left any. The force of several sides is their sum, which may be 0: each has a column, too."""
     try:
         summary = result.summary
     except Error:
@@ -170,6 +170,9 @@ def _main_results(result):
         found[key] = math.hypot(*value) if isinstance(value, list) else value
         found[f"{key}_unit"] = entry["unit"]
         found[f"{key}_error_bar"] = "" if bar is None else bar
+        if key == "contact_force":
+            for side, results in summary["results"].get("contact_sides", {}).items():
+                found[f"contact_force on {side}"] = math.hypot(*results["contact_force"]["value"])
     return found
 
 

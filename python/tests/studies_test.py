@@ -99,6 +99,14 @@ class Studies(TestCase):
             self.assertEqual(row["contact_force_error_bar"], "")  # one mesh shows none
             self.assertGreater(float(row["seconds"]), 0)
 
+    def test_the_table_has_the_force_of_each_of_several_sides(self):
+        deck = beam(Dirichlet={"left": {"X": 0}}, Traction={}, Contact={"Side": "bottom", "Gap": -0.002, "Sides": {"top": {"Gap": -0.002}}})
+        self.study(deck, {"Material->Poisson's Ratio": [0.3]}, folder=self.folder / "study")
+        with open(self.folder / "study" / "study.csv", newline="") as file:
+            row = next(csv.DictReader(file))
+        self.assertLess(float(row["contact_force"]), 1e-8 * float(row["contact_force on top"]))
+        self.assertAlmostEqual(float(row["contact_force on bottom"]) / float(row["contact_force on top"]), 1)
+
     def test_a_run_that_was_interrupted_is_run_again(self):
         logs = f"'{self.folder}'/study/run-*/deck.log"
         stopping = self.script(f'case $1 in --version) exec "$RPC" "$@";; esac\n"$RPC" "$@" &\nuntil grep -q uzawa {logs}; do sleep 0.02; done\n'
