@@ -114,7 +114,8 @@ class Promises(RpcTestCase):
                 best = min(cycles, key=lambda c: c["relative_estimate"])
                 self.assertIn(f"the least estimated error is {best['relative_estimate']:.6g}, with {best['dofs']} dofs", reason)
                 self.assertEqual(summary["dofs"], best["dofs"])
-                self.assertIn(f'takes more than "Adapt->Max Dofs" = {limit}', result.stdout)
+                self.assertRegex(reason, r"; by the order of the elements the target takes about \d+\. Raise ")
+                self.assertRegex(result.stdout, rf'(?m)^next mesh: .* the target with about \d+ dofs, more than "Adapt->Max Dofs" = {limit}(;|,|$)')
 
     @ONE_RANK
     def test_a_target_is_refused_only_after_meshes_at_the_limit(self):

@@ -31,6 +31,13 @@ double growth_for(const double reduction, const mesh::Element &element)
   return std::pow(reduction, double(element.dim) / element.order);
 }
 
+/// A number of which two digits are known.
+long long two_digits(const double value)
+{
+  const double unit = std::pow(10., std::max(0., std::floor(std::log10(value)) - 1));
+  return std::llround(std::round(value / unit) * unit);
+}
+
 } // namespace
 
 /// Cells that are made for one that is planned, as the present mesh shows; after the first one, which was not planned, a guess.
@@ -87,8 +94,10 @@ bool MeshPlanner::nothing_gained(const double eta, const double target, const do
 std::string MeshPlanner::least_estimate() const
 {
   std::ostringstream text;
-  text << "the least estimated error is " << least_ << ", with " << std::llround(least_dofs_)
-       << " dofs. Raise \"Adapt->Max Dofs\" or \"Adapt->Target Relative Error\"";
+  text << "the least estimated error is " << least_ << ", with " << std::llround(least_dofs_) << " dofs";
+  if (needed_ > static_cast<double>(task_.adapt.max_dofs))
+    text << "; by the order of the elements the target takes about " << two_digits(needed_);
+  text << ". Raise \"Adapt->Max Dofs\" or \"Adapt->Target Relative Error\"";
   return text.str();
 }
 
@@ -123,6 +132,7 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
   if (relative < least_) {
     least_ = relative;
     least_dofs_ = dofs;
+    needed_ = dofs * growth_for(eta / target, mesh.element);
   }
   const double most = static_cast<double>(task_.adapt.max_dofs);
   const double share = planned_at_limit_ ? plan_rules.share_again : plan_rules.share_of_max_dofs;

@@ -68,6 +68,7 @@ private:
     double eta = std::numeric_limits<double>::infinity(), dofs = 1;
   } before_;
   double least_ = std::numeric_limits<double>::infinity(), least_dofs_ = 0; // relative estimate, and on which mesh
+  double needed_ = 0;                          // unknowns for the target, as that mesh tells
   int tries_ = 0;                              // meshes that were planned after the present one
   double smallest_try_ = 0;                    // unknowns of these that do not fit
   bool halved_ = false;                        // the mesh that was planned last: gmsh makes cells of twice the size

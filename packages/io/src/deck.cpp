@@ -276,9 +276,9 @@ void check_outermost(const std::string &path, const ParameterList &list, const P
 
 ParameterList read_yaml(const std::string &path, const std::string &given, const ParameterList &valid)
 {
+  check_depth(path, given, true);
   read_yaml_lines(path, given);
   const std::string whole = with_bytes_marked(with_infinities(given));
-  check_depth(path, whole, true);
   const std::vector<std::string> lines = lines_of(whole);
   static const std::regex nothing(R"(\s*(#.*)?|---\s*|\.\.\.\s*|%.*)");
   const auto is_nothing = [](const std::string &line) { return std::regex_match(line, nothing); };

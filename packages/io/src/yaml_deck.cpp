@@ -32,9 +32,8 @@ std::string without_quotes(const std::string &name)
 
 std::string without_comment(const std::string &value)
 {
-  static const std::regex comment(R"(\s#)");
-  std::smatch found;
-  return std::regex_search(value, found, comment) ? trimmed(value.substr(0, found.position())) : value;
+  const std::size_t at = std::min(value.find(" #"), value.find("\t#"));
+  return at == std::string::npos ? value : trimmed(value.substr(0, at));
 }
 
 /// Number of names at the outermost level.
@@ -210,7 +209,7 @@ private:
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
     const std::string rest = trimmed(text_.substr(at_, end - at_));
     if (!rest.empty() && rest[0] != '#')
-      refuse(line_, "\"" + rest + "\" stands behind " +
+      refuse(line_, "\"" + rest.substr(0, 60) + "\" stands behind " +
                         (path.empty() ? "the end of the deck" : "the end of \"" + shown(path) + "\"") +
                         ". Remove it, or write it on a line of its own.");
   }
@@ -348,11 +347,11 @@ private:
     const std::size_t end = text_.find_first_of("}\n", begin);
     if (end == std::string::npos || text_[end] != '}' || text_[text_.find_last_not_of(' ', begin - 1)] != '{') return;
     const std::string content = trimmed(text_.substr(begin, end - begin));
-    if (content.find(": ") != std::string::npos) return;
-    static const std::regex number(R"([-+\d.].*)");
+    constexpr std::size_t longest = 300; // of a text that a message repeats
+    if (content.size() > longest || content.find(": ") != std::string::npos) return;
     const bool several = content.find(',') != std::string::npos;
     const std::string start = "{" + content + "} of \"" + shown(path) + "\" has no names. Write " + last_name(path);
-    if (several && std::regex_match(content, number))
+    if (several && !content.empty() && std::strchr("+-.0123456789", content[0]))
       refuse(line, start + ": [" + content + "] for a list of numbers.");
     if (!several && content.find_first_of("+-*/()0123456789") != std::string::npos)
       refuse(line, start + ": " + (content.find_first_of("*/(") == std::string::npos ? content : in_quotes(content)) +
@@ -368,10 +367,13 @@ private:
     const auto open = [](const std::string &text) {
       return std::count(text.begin(), text.end(), '(') - std::count(text.begin(), text.end(), ')');
     };
-    if (open(last) <= 0) return;
+    constexpr std::size_t longest = 300; // of a text that a message repeats
+    if (last.size() > longest || open(last) <= 0) return;
     std::string whole = last + ",";
     if (text_[begin - 1] == ' ') whole += ' ';
-    for (std::size_t at = begin; at < text_.size() && text_[at] != '\n' && open(whole) > 0; ++at) whole += text_[at];
+    for (std::size_t at = begin;
+         at < text_.size() && text_[at] != '\n' && open(whole) > 0 && whole.size() < 2 * longest; ++at)
+      whole += text_[at];
     refuse(line, "the comma of " + last + ", ... in the \"{\" of \"" + shown(path) +
                      "\" ends the value. A value with commas needs quotes: write " + in_quotes(whole));
   }

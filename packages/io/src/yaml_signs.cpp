@@ -42,7 +42,8 @@ std::string wrong_signs(const std::string &path, const std::string &value)
 {
   static const std::regex text_below(R"([|>][-+]?\d*)"), anchor(R"([&*][A-Za-z_].*)"), variable(R"(\$\{?\w+\}?)"),
       entry_within(R"((.*?\S)\s+(["']?)([A-Za-z][A-Za-z' ]*)\2:(\s.*)?)"), drive(R"([A-Za-z]:[\\/].*)");
-  if (value.empty()) return "";
+  constexpr std::size_t longest = 300; // of a value that a message repeats
+  if (value.empty() || value.size() > longest) return "";
   if (value[0] == '"' || value[0] == '\'') return wrong_escape(path, value);
   if (value[0] == '!' || std::regex_match(value, text_below)) return "";
   const std::string what = "\"" + path + "\" = " + value, name = last_name(path);
