@@ -297,7 +297,7 @@ void load(const GmshRequest &request, GmshContents &contents)
   if (request.file.empty())
     add_box(request);
   else
-    contents.complaint = open_file(request);
+    contents.complaint = open_file(request, contents.notes);
   const std::string error = first_error();
   if (!error.empty()) contents.complaint = with_remedy(error);
   if (!contents.complaint.empty()) return;

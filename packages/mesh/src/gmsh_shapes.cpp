@@ -5,6 +5,7 @@
 #include "mesh_formats.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <gmsh.h>
 #include <map>
 #include <utility>
@@ -59,6 +60,34 @@ std::string fill_surface()
   return "";
 }
 
+/// Whether all of a model has one z, to a millionth of its size.
+bool in_one_height()
+{
+  double low[3], high[3];
+  gmsh::model::getBoundingBox(-1, -1, low[0], low[1], low[2], high[0], high[1], high[2]);
+  constexpr double flat = 1e-6;
+  return high[2] - low[2] <= flat * std::hypot(high[0] - low[0], high[1] - low[1]);
+}
+
+/// Makes solids of faces that bound them, as most IGES files have them. @return whether there is a solid then
+bool sew_faces(std::vector<std::string> &notes)
+{
+  gmsh::vectorpair all, sewn;
+  gmsh::model::getEntities(all, 2);
+  double low[3], high[3];
+  gmsh::model::getBoundingBox(-1, -1, low[0], low[1], low[2], high[0], high[1], high[2]);
+  constexpr double gap = 1e-6; // of the body, between edges that are one: IGES writes seven digits and more
+  const double size = std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+  gmsh::model::occ::healShapes(sewn, all, gap * size);
+  gmsh::model::occ::remove(all, true);
+  gmsh::model::occ::synchronize();
+  gmsh::model::getEntities(sewn, 3);
+  if (sewn.empty()) return false;
+  notes.push_back("the file has " + std::to_string(all.size()) + " faces and no solid: they are sewn, and bound " +
+                  (sewn.size() == 1 ? "one solid" : std::to_string(sewn.size()) + " solids"));
+  return true;
+}
+
 /// "Shapes/bracket/foot" is the "foot" of a file. What translators make up is no name.
 std::string name_in_file(const int dim, const int tag)
 {
@@ -92,7 +121,7 @@ std::vector<std::pair<std::string, std::vector<int>>> named_entities(const int d
 
 } // namespace
 
-std::string open_file(const GmshRequest &request)
+std::string open_file(const GmshRequest &request, std::vector<std::string> &notes)
 {
   gmsh::open(request.file);
   if (format_of(request.file) != MeshFormat::shapes || !first_error().empty()) return "";
@@ -100,6 +129,10 @@ std::string open_file(const GmshRequest &request)
   gmsh::vectorpair bodies;
   gmsh::model::getEntities(bodies, gmsh::model::getDimension());
   if (bodies.empty() || gmsh::model::getDimension() < 2) return "there is no solid and no surface in it";
+  if (gmsh::model::getDimension() == 2 && !in_one_height() && !sew_faces(notes))
+    return "its faces do not bound a solid: there is an open edge, or a face twice. Write the body as a solid, in a "
+           "STEP "
+           "file; for a body in the plane, its face at one height z";
   join_parts();
   return "";
 }

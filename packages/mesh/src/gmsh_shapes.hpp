@@ -7,9 +7,10 @@ namespace rpc::mesh
 {
 
 /// Opens what a request names: a .geo, a file of shapes or a mesh. The parts of a file of shapes are joined where they touch, and the surface
-/// of an STL is divided at its edges and filled.
+/// of an STL is divided at its edges and filled. Faces in space without a solid are sewn.
+/// @param[in,out] notes  what the user should know of it
 /// @return why that cannot be done; "" if it is
-std::string open_file(const GmshRequest &request);
+std::string open_file(const GmshRequest &request, std::vector<std::string> &notes);
 
 /// gmsh's complaint, with a remedy where a .geo merges a file of a format that gmsh takes for a script.
 std::string with_remedy(const std::string &complaint);
