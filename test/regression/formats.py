@@ -153,6 +153,50 @@ meshio.write(sys.argv[2], out)
         self.expect_refusal(result, 2, ['"foot"', "surface 2", '"Mesh->Sides" chooses others by place or number'])
 
     @unittest.skipUnless(HAS_GMSH, "rpc was built without gmsh")
+    def test_faces_of_an_iges_file_are_sewn_to_the_solid_of_a_brep(self):
+        deck = """cylinder:
+  Mesh: {{Type: gmsh, File: {file}, Size: 4, Order: 1, Sides: {{foot: {{Plane: "z = 0"}}, head: {{Near: [0.0, 0.0, 10.0]}}}}}}
+  Material: {{Young's Modulus: 1000.0, Poisson's Ratio: 0.3}}
+  Units: {{Length: mm}}
+  Dirichlet:
+    head: {{X: 0.0, Y: 0.0, Z: -0.01}}
+  Contact: {{Side: foot}}
+"""
+        forces = []
+        for file in ("cylinder.iges", "cylinder.brep"):
+            shutil.copy(DATA / file, self.folder)
+            summary, said = self.run_of(deck.format(file=file), "cylinder")
+            forces.append(summary["contact_force"][2])
+            self.assertEqual("3 faces and no solid: they are sewn, and bound one solid" in said, file.endswith("iges"))
+        self.assertAlmostEqual(*forces, delta=0.03 * forces[0])
+        text = (DATA / "cylinder.iges").read_text()
+        wall = text.index("     144 ") # the first face
+        (self.folder / "cylinder.iges").write_text(text[:wall] + "     406 " + text[wall + 9:])
+        self.expect_refusal(self.rpc("--mesh-info=cylinder.iges", code=None), 3, ["do not bound a solid", "STEP"])
+
+    @unittest.skipUnless(HAS_MESHIO, "python3 has no meshio and h5py")
+    def test_abaqus_files_with_includes_repeated_sets_and_surfaces(self):
+        corners = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        edges = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+        places = corners + [tuple((p + q) / 2 for p, q in zip(corners[a], corners[b])) for a, b in edges]
+        (self.folder / "cells.txt").write_text("*NODE, NSET=all\n" + "".join(f"{k}, {x}, {y}, {z}\n" for k, (x, y, z) in enumerate(places, 1))
+                                               + "*ELEMENT, TYPE=C3D20R, ELSET=part\n1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10,\n11, 12, 13, 14, 15, 16, 17, 18, 19, 20\n")
+        (self.folder / "cube.inp").write_text("** by hand\n*Include, input=cells.txt\n*ELEMENT, TYPE=SPRINGA\n2, 1, 2\n*NSET, NSET=foot, GENERATE\n1, 4\n"
+                                              "*NSET, NSET=foot\n9, 10, 11, 12\n*NSET, NSET=same\nFOOT\n"
+                                              "*SURFACE, NAME=head\npart, S2\n*SURFACE, NAME=left\n1, S6\n*SURFACE, NAME=lost\n1, SPOS\n")
+        info = self.rpc("--mesh-info=cube.inp").stdout
+        for words in ('side        "head": 1 facet, area 1, centroid (0.5, 0.5, 1)', 'side        "left": 1 facet, area 1, centroid (0, 0.5, 0.5)',
+                      'side        "foot": 1 facet, area 1, centroid (0.5, 0.5, 0)', 'side        "same": 1 facet', 'block       "part"',
+                      "SPRINGA", '"all" has all nodes', '*SURFACE "lost": of 1 elements of "1" 1 have no facet "SPOS"'):
+            self.assertIn(words, info)
+        for change, words in ((("foot\n9", "foot\nx9x"), ['names "x9x"']), (("cells.txt", "cell.txt"), ["line 2: *INCLUDE", '"cell.txt"']),
+                              (("SPRINGA", "C3D8"), ["line 4: *ELEMENT", "the last one is not whole"])):
+            (self.folder / "wrong.inp").write_text((self.folder / "cube.inp").read_text().replace(*change))
+            result = self.rpc("--mesh-info=wrong.inp", code=None)
+            for word in words:
+                self.assertIn(word, result.stdout + result.stderr)
+
+    @unittest.skipUnless(HAS_GMSH, "rpc was built without gmsh")
     def test_an_stl_is_filled_or_refused(self):
         (self.folder / "box.stl").write_text(stl_of_box(1, 1, 1))
         summary, said = self.run_of(CUBE.format(file="box.stl", head='Near: [0.5, 0.5, 1.0]', more=", Size: 0.5"), "cube")

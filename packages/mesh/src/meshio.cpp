@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "meshio.hpp"
 
+#include "abaqus_script.hpp"
 #include "meshio_script.hpp"
 #include "msh_reader.hpp"
 #include "rpc/core/error.hpp"
@@ -100,13 +101,14 @@ GmshContents read_by_meshio(const std::string &where, const std::string &path)
 {
   const ScratchFolder folder(where);
   const std::string mesh = folder.file("mesh.msh"), out = folder.file("notes"), errors = folder.file("errors");
-  const int status = run_python({"python3", "-c", meshio_script, path, mesh}, out, errors);
-  constexpr int no_program = 127, no_meshio = 9; // of posix_spawnp()'s child, and of the script
+  const int status = run_python({"python3", "-c", std::string(abaqus_script) + meshio_script, path, mesh}, out, errors);
+  constexpr int no_program = 127, no_meshio = 9, refused = 8; // of posix_spawnp()'s child, and of the script
   const bool exited = status >= 0 && WIFEXITED(status);
   RPC_REQUIRE(exited ? WEXITSTATUS(status) != no_program && WEXITSTATUS(status) != no_meshio : status >= 0,
               where << "files of this format are converted by the Python package meshio, which python3 does not find; "
                     << install);
   const std::string complaint = last_line(contents_of(errors));
+  RPC_REQUIRE_CODE(!exited || WEXITSTATUS(status) != refused, ExitCode::bad_mesh, where << complaint);
   RPC_REQUIRE_CODE(exited && WEXITSTATUS(status) == 0, ExitCode::bad_mesh,
                    where << "meshio cannot convert it: " << (complaint.empty() ? "it broke down" : complaint));
   GmshContents contents = read_msh(where, contents_of(mesh));

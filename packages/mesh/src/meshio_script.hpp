@@ -5,7 +5,8 @@ namespace rpc::mesh
 {
 
 /// What python3 runs, with the file and the .msh to be written as arguments: meshio reads and writes. Of sets that overlap a cell belongs to
-/// the smallest one. Lines that begin with "note: " go to the user. Exit code 9: there is no meshio.
+/// the smallest one. Lines that begin with "note: " go to the user. Exit code 9: there is no meshio; 8: rpc's own reader of Abaqus
+/// files refuses it.
 inline constexpr const char *meshio_script = R"py(
 import contextlib
 import io
@@ -19,46 +20,31 @@ path, target = sys.argv[1:3]
 TYPES = {"vertex": 0, "line": 1, "line3": 1, "triangle": 2, "triangle6": 2, "quad": 2, "quad8": 2, "quad9": 2, "tetra": 3, "tetra10": 3,
          "hexahedron": 3, "hexahedron20": 3, "hexahedron27": 3, "wedge": 3, "wedge15": 3, "wedge18": 3, "pyramid": 3, "pyramid13": 3,
          "pyramid14": 3}
+MATERIALS = ("mat_id", "MaterialIds", "material", "CellEntityIds", "ElementBlockIds")  # of VTK: the first of them counts
 TAGS = ("gmsh:physical", "medit:ref", "nastran:ref", "cell_tags", "avsucd:material", "flac3d:group", "tetgen:ref")
 
 def say(text):
     print("note:", " ".join(str(text).split()))
 
-def abaqus_keywords():
-    """(keyword, parameters, first item of the data) of an Abaqus file, whose sets meshio takes for others where they stand in certain ways."""
-    found = []
-    with open(path, errors="replace") as file:
-        for line in file:
-            if line.startswith("**") or not line.strip():
-                continue
-            if line.startswith("*"):
-                words = [word.strip() for word in line[1:].split(",")]
-                parameters = dict([part.strip() for part in word.split("=", 1)] for word in words[1:] if "=" in word)
-                found.append([words[0].upper(), {key.upper(): value for key, value in parameters.items()}, ""])
-            elif found and not found[-1][2]:
-                found[-1][2] = line.split(",")[0].strip()
-    return found
-
-keywords = abaqus_keywords() if path.lower().endswith(".inp") else []
-if keywords:
-    for word in ("INCLUDE", "NODE"):
-        if sum(each[0] == word for each in keywords) > (word == "NODE"):
-            sys.exit(f"there is more than one *{word}" if word == "NODE" else "it has *INCLUDE" + ": write the mesh into one file with one *NODE")
-    more = {"CPE3": "triangle", "CAX3": "triangle", "CPS6": "triangle6", "CAX6": "triangle6", "CPE4": "quad", "CPE4R": "quad", "CAX4": "quad",
-            "CAX4R": "quad", "CPS8": "quad8", "CPS8R": "quad8", "CPE8": "quad8", "CPE8R": "quad8", "CAX8": "quad8", "CAX8R": "quad8"}
+def by_meshio():
+    said = io.StringIO()
     try:
-        from meshio.abaqus._abaqus import abaqus_to_meshio_type
-        abaqus_to_meshio_type.update({key: value for key, value in more.items() if key not in abaqus_to_meshio_type})
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            return meshio.read(path)
     except ImportError:
-        pass  # another version: it reads what it reads
-said = io.StringIO()
-try:
-    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-        mesh = meshio.read(path)
-except ImportError:
-    sys.exit(9)
-except SystemExit:
-    sys.exit("; ".join(line.strip() for line in said.getvalue().splitlines() if line.strip()) or "it gives no reason")
+        sys.exit(9)
+    except SystemExit:
+        sys.exit("; ".join(line.strip() for line in said.getvalue().splitlines() if line.strip()) or "it gives no reason")
+
+def by_own_reader():
+    try:
+        points, cells, sets, point_sets = read_abaqus(path, say)
+    except SystemExit as refused:
+        print(refused, file=sys.stderr)
+        sys.exit(8)
+    return meshio.Mesh(points, cells, cell_sets=sets, point_sets=point_sets)
+
+mesh = by_own_reader() if path.lower().endswith(".inp") else by_meshio()
 points = numpy.asarray(mesh.points, dtype=float)
 if points.ndim != 2 or not 1 < points.shape[1] < 4 or not len(points):
     sys.exit("it finds no nodes in the plane or in space")
@@ -75,16 +61,6 @@ sets = {}  # name -> for each block the places of its cells
 for name, of_blocks in (mesh.cell_sets or {}).items():
     sets[str(name)] = [numpy.asarray([] if cells is None else cells, dtype=int) for cells in of_blocks]
 point_sets = {str(name): numpy.asarray(nodes, dtype=int).ravel() for name, nodes in (mesh.point_sets or {}).items()}
-for word, key, of_kind in (("ELSET", "ELSET", sets), ("NSET", "NSET", point_sets)):
-    for name in sorted({each[1].get(key, "") for each in keywords if each[0] == word}):
-        same = [each for each in keywords if each[0] == word and each[1].get(key, "") == name]
-        if len(same) > 1 or not same[0][2].isdigit():
-            of_kind.pop(name, None)
-            say(f'*{word} "{name}" is left out: meshio reads sets that are given once, by numbers')
-elements = [each[1] for each in keywords if each[0] == "ELEMENT"]
-if len(elements) == len(blocks):
-    for name in {each["ELSET"] for each in elements if "ELSET" in each}:
-        sets[name] = [numpy.arange(len(nodes) if each.get("ELSET") == name else 0) for each, (kind, nodes) in zip(elements, blocks)]
 families = getattr(mesh, "cell_tags", None) or {}  # of MED
 for key in TAGS:
     if key not in mesh.cell_data:
@@ -94,6 +70,16 @@ for key in TAGS:
         for name in families.get(tag, [str(tag)]) if key == "cell_tags" else [str(tag)]:
             found = [numpy.flatnonzero(each == tag) for each in values]
             sets[name] = [numpy.union1d(a, b) for a, b in zip(sets[name], found)] if name in sets else found
+fields = [] if "cell_tags" in mesh.cell_data else [name for name in mesh.cell_data if name not in TAGS]
+for key in [name for name in MATERIALS if name in fields][:1]:
+    values = [numpy.asarray(each, dtype=float).ravel() for each in mesh.cell_data[key]]
+    if all(len(v) == len(nodes) and numpy.array_equal(v, numpy.round(v)) for v, (kind, nodes) in zip(values, blocks)):
+        fields.remove(key)
+        for tag in sorted({int(v) for each in values for v in each}):
+            sets[str(tag)] = [numpy.flatnonzero(each == tag) for each in values]
+fields += [name for name in mesh.point_data if name != "point_tags"]
+if fields:
+    say("fields are left out: " + ", ".join(f'"{name}"' for name in fields))
 names, cells, physical = {}, [], []
 
 def add(kind, nodes, name, dim):
@@ -146,9 +132,6 @@ for name, nodes in point_sets.items():
     if nodes[0] < 0 or nodes[-1] >= len(points):
         sys.exit(f"set {name} names nodes that there are not")
     add("vertex", nodes.reshape(-1, 1), name, 0)
-for each in keywords:
-    if each[0] == "SURFACE":
-        say(f'*SURFACE "{each[1].get("NAME", "")}" is left out: meshio does not read it. Sides come from *NSET, and from *ELSET of facets')
 if points.shape[1] == 2:
     points = numpy.column_stack([points, numpy.zeros(len(points))])
 data = {"gmsh:physical": physical, "gmsh:geometrical": physical}
