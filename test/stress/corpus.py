@@ -299,6 +299,11 @@ def scenes(source):
                              ("square.inp", SQUARE, ""), ("square.vtu", SQUARE, PLANES), ("two_squares.exo", SQUARES, ""),
                              ("two_squares_4.exo", SQUARES, ""), ("brick_20.exo", BRICK, "")):
         texts[f"{mesh.replace('.', '_')}.yaml"] = [deck.replace("MESH", mesh).replace("MORE", more), data / mesh]
+    for mesh, deck, more in (("square.med", SQUARE, ""), ("square.vtk", SQUARE, PLANES)):
+        texts[f"{mesh.replace('.', '_')}.yaml"] = [deck.replace("MESH", mesh).replace("MORE", more), data / mesh]
+    for mesh, surfaces in (("cylinder.iges", (6, 5)), ("cylinder.brep", (3, 2))):
+        deck = replaced(PIN, (r"\[2\]", f"[{surfaces[0]}]"), (r"\[3\]", f"[{surfaces[1]}]"))
+        texts[f"{mesh.replace('.', '_')}.yaml"] = [deck.replace("MESH", mesh), data / mesh]
     texts["pin_step.yaml"] = [PIN.replace("MESH", "pin.step"), source / "doc/tutorial/pin.step"]
     texts["box_stl.yaml"] = [BOX.replace("MESH", "box.stl"), ("box.stl", stl_of_box())]
     for mesh in sorted([*data.glob("*.msh"), *data.glob("*.geo")]):
