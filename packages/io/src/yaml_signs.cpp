@@ -62,7 +62,7 @@ std::string wrong_signs(const std::string &path, const std::string &value)
     return what + " has a single \". Remove it, or write one before the value too.";
   const bool is_path = std::regex_match(value, drive) || name == "File";
   const std::string quoted = in_quotes(is_path ? with_slashes(value) : value);
-  return what + " has a " + value[at] + ", which YAML takes in quotes alone. Write " +
+  return what + " has a " + value[at] + ": in YAML such a value needs quotes. Write " +
          (quoted.empty() ? "the value in quotes." : name + ": " + quoted);
 }
 

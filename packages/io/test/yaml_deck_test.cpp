@@ -38,9 +38,9 @@ protected:
 TEST_F(YamlDeck, WithSignsOfYamlIsToldWhichNeedQuotes)
 {
   expect_refused("    Gap: x > 1 ? 0 : 2",
-                 "\"Contact->Gap\" = x > 1 ? 0 : 2 has a >, which YAML takes in quotes alone. "
+                 "\"Contact->Gap\" = x > 1 ? 0 : 2 has a >: in YAML such a value needs quotes. "
                  "Write Gap: \"x > 1 ? 0 : 2\"");
-  expect_refused("    Walls: {a: {Gap: x != 1}}", "has a !, which YAML takes in quotes alone. Write Gap: \"x != 1\"");
+  expect_refused("    Walls: {a: {Gap: x != 1}}", "has a !: in YAML such a value needs quotes. Write Gap: \"x != 1\"");
   expect_refused("    Side: a \"b\"", "Write Side: 'a \"b\"'");
   expect_refused("    Gap: 0.1*x\"", "has a single \". Remove it");
   expect_refused("    File: C:\\new\\foot.step", "Write File: \"C:/new/foot.step\"");
