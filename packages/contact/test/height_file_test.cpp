@@ -6,6 +6,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <netcdf.h>
+#include <sstream>
+#include <unistd.h>
 
 namespace height_file_test
 {
@@ -170,7 +175,43 @@ TEST(Heights, OfNetcdfAreReadWithTheirPlaces)
   const std::string whole = netcdf(false);
   for (std::size_t size = 0; size < whole.size(); size += 7)
     expect_error(ExitCode::bad_input, {"\"a.nc\"", ". "}, [&] { read("a.nc", whole.substr(0, size)); });
-  refuse("a.nc", "\x89HDF\r\n\x1a\n and so on", {"HDF5", "nccopy -k classic"});
+  refuse("a.nc", "\x89HDF\r\n\x1a\n and so on", {"damaged"});
+}
+
+/// A file of NetCDF's version 4, whose heights are compressed.
+std::string netcdf_4()
+{
+  const std::string path = testing::TempDir() + "rpc_heights_" + std::to_string(::getpid()) + ".nc";
+  int file = -1, dimensions[2] = {-1, -1}, z = -1;
+  const double heights[6] = {1, 2, 3, 4, 5, 6};
+  EXPECT_EQ(nc_create(path.c_str(), NC_NETCDF4, &file), NC_NOERR);
+  EXPECT_EQ(nc_def_dim(file, "y", 2, &dimensions[0]), NC_NOERR);
+  EXPECT_EQ(nc_def_dim(file, "x", 3, &dimensions[1]), NC_NOERR);
+  EXPECT_EQ(nc_def_var(file, "z", NC_DOUBLE, 2, dimensions, &z), NC_NOERR);
+  EXPECT_EQ(nc_def_var_deflate(file, z, 0, 1, 9), NC_NOERR);
+  EXPECT_EQ(nc_enddef(file), NC_NOERR);
+  EXPECT_EQ(nc_put_var_double(file, z, heights), NC_NOERR);
+  EXPECT_EQ(nc_close(file), NC_NOERR);
+  std::ostringstream bytes;
+  bytes << std::ifstream(path, std::ios::binary).rdbuf();
+  std::filesystem::remove(path);
+  return bytes.str();
+}
+
+TEST(Heights, OfNetcdfsVersion4AreReadAndDamagedOnesRefused)
+{
+  const std::string whole = netcdf_4();
+  expect_six(read("a.nc", whole));
+  for (std::size_t at = 8; at < whole.size(); at += whole.size() / 40) {
+    refuse("a.nc", whole.substr(0, at), {"."});
+    std::string damaged = whole;
+    for (std::size_t k = at; k < std::min(at + 8, whole.size()); ++k) damaged[k] = static_cast<char>(~damaged[k]);
+    try {
+      EXPECT_EQ(read("a.nc", damaged).height.size(), 6u) << at; // a byte that means nothing
+    } catch (const Error &error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input) << at << ' ' << error.what();
+    }
+  }
 }
 
 } // namespace

@@ -3,23 +3,17 @@
 
 #include "gmsh_types.hpp"
 #include "gmsh_wire.hpp"
+#include "rpc/core/child_process.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/mesh/element.hpp"
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <csignal>
 #include <cstdint>
-#include <cstring>
 #include <exodusII.h>
-#include <fcntl.h>
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <sys/socket.h>
-#include <sys/wait.h>
-#include <unistd.h>
 #include <utility>
 
 namespace rpc::mesh
@@ -313,51 +307,15 @@ private:
   GmshContents contents_;
 };
 
-/// What a damaged file makes of the libraries ends with this process: HDF5, below NetCDF, can break down or write to the console.
-[[noreturn]] void answer_as_child(const int socket, const std::string &where, const std::string &path)
-{
-  const int nothing = ::open("/dev/null", O_RDWR);
-  for (const int console : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(nothing, console);
-  for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL})
-    std::signal(signal, SIG_DFL); // MPI's would write, too
-  bool sent = false;
-  try {
-    GmshContents contents;
-    try {
-      contents = ExodusMesh(where, path).contents();
-    } catch (const Error &error) {
-      contents = GmshContents();
-      contents.complaint = error.what();
-    }
-    sent = send_bytes(socket, packed(contents)) && send_end(socket, 0);
-  } catch (const std::exception &) { // out of memory
-  }
-  ::_exit(sent ? 0 : 1);
-}
-
 } // namespace
 
 GmshContents read_exodus_mesh(const std::string &where, const std::string &path)
 {
-  int ends[2];
-  RPC_REQUIRE(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) == 0,
-              where << "cannot be read: there is no socket: " << std::strerror(errno));
-  const pid_t child = ::fork();
-  if (child == 0) {
-    ::close(ends[0]); // where the parent dies, what is sent fails
-    answer_as_child(ends[1], where, path);
-  }
-  ::close(ends[1]);
-  std::string bytes;
-  int number = 0;
-  const bool whole = child > 0 && receive(ends[0], bytes, number);
-  ::close(ends[0]);
-  while (child > 0 && ::waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
-  }
-  RPC_REQUIRE_CODE(whole, ExitCode::bad_mesh,
+  // HDF5, below NetCDF, breaks down on damaged files, and writes to the console.
+  const std::optional<std::string> bytes = in_child_process([&] { return packed(ExodusMesh(where, path).contents()); });
+  RPC_REQUIRE_CODE(bytes, ExitCode::bad_mesh,
                    where << "the Exodus library broke down on it, as it does on damaged files or when memory runs out");
-  GmshContents contents = unpacked_contents(bytes);
-  if (!contents.complaint.empty()) throw Error(ExitCode::bad_mesh, contents.complaint);
+  GmshContents contents = unpacked_contents(*bytes);
   contents.kind = {"node set", "side set", contents.dim == 2 ? "block" : "side set", "block"};
   contents.node_sets = true;
   return contents;

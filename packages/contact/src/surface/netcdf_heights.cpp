@@ -1,281 +1,201 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "height_formats.hpp"
+#include "rpc/core/child_process.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/parameters.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
-#include <map>
+#include <netcdf.h>
+#include <netcdf_mem.h>
+#include <optional>
 
-/// NetCDF's classic format, by its published grammar: a damaged file breaks down the NetCDF library itself (4.9), and with it the run.
 namespace rpc::contact
 {
 namespace
 {
 
-/// The numbers of a file, from the highest byte to the lowest. Versions 1 and 2 have counts of 4 bytes, version 5 of 8; places in the file
-/// have 4 bytes in version 1 alone.
-class NetcdfBytes
-{
-public:
-  explicit NetcdfBytes(const HeightFile &file) : file_(file), version_(file.bytes.size() > 3 ? file.bytes[3] : 0)
-  {
-    RPC_REQUIRE(
-        file.bytes.compare(0, 8, "\x89HDF\r\n\x1a\n") != 0,
-        file.where << "must be of NetCDF's classic format, got HDF5. Convert it: nccopy -k classic in.nc out.nc");
-    RPC_REQUIRE(file.bytes.compare(0, 3, "CDF") == 0 && (version_ == 1 || version_ == 2 || version_ == 5),
-                file.where << "does not begin as a NetCDF file does. Write it again");
-  }
-  std::uint64_t whole(const std::size_t size)
-  {
-    require_room(size);
-    std::uint64_t value = 0;
-    for (std::size_t k = 0; k < size; ++k) value = value << 8 | static_cast<unsigned char>(file_.bytes[at_ + k]);
-    at_ += size;
-    return value;
-  }
-  std::uint64_t count() { return whole(version_ == 5 ? 8 : 4); }
-  std::uint64_t place() { return whole(version_ == 1 ? 4 : 8); }
-  std::string text(const std::uint64_t size)
-  {
-    require_room(size);
-    const std::string found = file_.bytes.substr(at_, size);
-    skip(size);
-    return found;
-  }
-  std::string name() { return text(count()); }
-  /// Over values, which are filled up to words of 4 bytes.
-  void skip(const std::uint64_t size)
-  {
-    require_room(size);
-    at_ += std::min<std::size_t>(size + (4 - size % 4) % 4, file_.bytes.size() - at_);
-  }
-  /// How many entries a list has, whose mark is `mark` unless it is empty.
-  std::uint64_t list(const std::uint64_t mark)
-  {
-    const std::uint64_t found = whole(4), entries = count();
-    if ((found != mark && (found != 0 || entries != 0)) || entries > file_.bytes.size()) fail();
-    return entries;
-  }
-  void go_to(const std::uint64_t place)
-  {
-    if (place > file_.bytes.size()) fail();
-    at_ = place;
-  }
-  std::size_t at() const { return at_; }
-  /// Whether a file that ends here is cut off.
-  void require_room(const std::uint64_t size) const
-  {
-    if (size > file_.bytes.size() - at_) fail();
-  }
-  /// A number of one of the format's types.
-  double number(const std::uint64_t type)
-  {
-    const std::uint64_t bits = whole(size_of(type));
-    const auto as = [&](auto value, auto same_bits) {
-      same_bits = static_cast<decltype(same_bits)>(bits);
-      std::memcpy(&value, &same_bits, sizeof value);
-      return static_cast<double>(value);
-    };
-    switch (type) {
-    case 1:
-      return as(std::int8_t(), std::uint8_t());
-    case 3:
-      return as(std::int16_t(), std::uint16_t());
-    case 4:
-      return as(std::int32_t(), std::uint32_t());
-    case 5:
-      return as(float(), std::uint32_t());
-    case 6:
-      return as(double(), std::uint64_t());
-    case 10:
-      return as(std::int64_t(), std::uint64_t());
-    default:
-      return static_cast<double>(bits); // without sign
-    }
-  }
-  std::size_t size_of(const std::uint64_t type) const
-  {
-    const std::size_t sizes[] = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
-    if (type < 1 || type > 11) fail();
-    return sizes[type];
-  }
-  [[noreturn]] void fail() const
-  {
-    throw Error(ExitCode::bad_input, file_.where + "is cut off or damaged: it breaks NetCDF's grammar at byte " +
-                                         std::to_string(at_) + ". Write it again");
-  }
-
-private:
-  const HeightFile &file_;
-  int version_;
-  std::size_t at_ = 4;
-};
-
-/// Marks of lists, and a type.
-struct NetcdfWord {
-  static constexpr std::uint64_t dimensions = 10, variables = 11, attributes = 12, text = 2;
-};
-
-struct NetcdfDimension {
-  std::string name;
-  std::uint64_t length;
-};
-struct NetcdfVariable {
-  std::string name;
-  std::vector<std::size_t> dimension;
-  std::map<std::string, double> attribute; // those of one number
-  std::uint64_t type, begin;
-};
-
+/// A NetCDF file in memory, of the classic format or of version 4.
 class NetcdfHeights
 {
 public:
-  explicit NetcdfHeights(const HeightFile &file) : file_(file), in_(file)
+  explicit NetcdfHeights(const HeightFile &file) : file_(file)
   {
-    in_.count(); // of records
-    for (std::uint64_t left = in_.list(NetcdfWord::dimensions); left > 0; --left) {
-      const std::string name = in_.name();
-      dimensions_.push_back({name, in_.count()});
-    }
-    attributes();
-    for (std::uint64_t left = in_.list(NetcdfWord::variables); left > 0; --left) {
-      NetcdfVariable v;
-      v.name = in_.name();
-      for (std::uint64_t more = in_.count(); more > 0; --more) {
-        v.dimension.push_back(in_.count());
-        if (v.dimension.back() >= dimensions_.size()) in_.fail();
-      }
-      v.attribute = attributes();
-      v.type = in_.whole(4);
-      in_.size_of(v.type);
-      in_.count(); // of bytes, which follows from the rest
-      v.begin = in_.place();
-      variables_.push_back(v);
-    }
+    is_hdf5_ = file.bytes.compare(0, 8, "\x89HDF\r\n\x1a\n") == 0;
+    const std::string begin = file.bytes.substr(0, 4);
+    RPC_REQUIRE(is_hdf5_ || begin == std::string("CDF\1") || begin == std::string("CDF\2") ||
+                    begin == std::string("CDF\5"),
+                file.where << "does not begin as a NetCDF file does. Write it again");
+    check(nc_open_mem("heights", NC_NOWRITE, file.bytes.size(), const_cast<char *>(file.bytes.data()), &id_), "open");
   }
-
-  HeightTable table()
+  ~NetcdfHeights()
   {
-    const NetcdfVariable &z = heights();
+    if (id_ >= 0) nc_close(id_);
+  }
+  NetcdfHeights(const NetcdfHeights &) = delete;
+  NetcdfHeights &operator=(const NetcdfHeights &) = delete;
+
+  HeightTable table() const
+  {
+    const int variable = heights();
+    const std::vector<int> dimensions = dimensions_of(variable);
     HeightTable table;
-    const std::size_t columns_at = z.dimension.back();
-    const std::uint64_t rows = z.dimension.size() == 1 ? 1 : dimensions_[z.dimension[0]].length,
-                        columns = dimensions_[columns_at].length;
-    const std::vector<double> read = numbers(z, rows, columns);
-    table.rows = static_cast<int>(rows);
-    table.columns = static_cast<int>(columns);
-    const auto [dx, along_x] = spacing_along(dimensions_[columns_at]);
-    const auto [dy, along_y] =
-        z.dimension.size() == 1 ? std::array<double, 2>{0, 1} : spacing_along(dimensions_[z.dimension[0]]);
-    table.spacing = {dx, dy};
+    std::array<std::size_t, 2> size{1, 1}; // rows, columns
+    const int first = dimensions.size() == 1 ? 1 : 0;
+    double signs[2] = {1, 1};
+    for (std::size_t k = 0; k < dimensions.size(); ++k) {
+      size[first + k] = length_of(dimensions[k]);
+      const int c = 1 - static_cast<int>(first + k);
+      const auto [step, sign] = spacing_along(dimensions[k]);
+      table.spacing[c] = step;
+      signs[c] = sign;
+    }
+    RPC_REQUIRE(size[0] > 0 && size[1] > 0 && size[0] < 1000000 && size[1] < 1000000 &&
+                    (is_hdf5_ || size[0] * size[1] <= file_.bytes.size()), // that of version 4 may be compressed
+                file_.where << "is cut off: it says " << size[0] << " x " << size[1] << " heights, and has "
+                            << file_.bytes.size() << " bytes. Write it again");
+    table.rows = static_cast<int>(size[0]);
+    table.columns = static_cast<int>(size[1]);
+    std::vector<double> read(size[0] * size[1]);
+    check(nc_get_var_double(id_, variable, read.data()), "read");
+    const double factor = attribute(variable, "scale_factor", 1), offset = attribute(variable, "add_offset", 0);
     for (const char *const name : {"_FillValue", "missing_value"}) {
-      if (z.attribute.count(name) == 0) continue;
-      const auto found = std::find(read.begin(), read.end(), z.attribute.at(name));
+      const double missing = attribute(variable, name, NAN);
+      const auto found = std::find(read.begin(), read.end(), missing);
       RPC_REQUIRE(found == read.end(), file_.where << "must have a height at each place, got its " << name << " in row "
                                                    << (found - read.begin()) / table.columns + 1 << ", column "
                                                    << (found - read.begin()) % table.columns + 1
                                                    << ". Fill in what was not measured, or cut it off");
     }
-    const double factor = z.attribute.count("scale_factor") > 0 ? z.attribute.at("scale_factor") : 1,
-                 offset = z.attribute.count("add_offset") > 0 ? z.attribute.at("add_offset") : 0;
+    table.height.resize(read.size());
     for (int j = 0; j < table.rows; ++j)
       for (int i = 0; i < table.columns; ++i) {
-        const int row = along_y < 0 ? table.rows - 1 - j : j, column = along_x < 0 ? table.columns - 1 - i : i;
-        table.height.push_back(factor * read[static_cast<std::size_t>(row) * table.columns + column] + offset);
+        const int row = signs[1] < 0 ? table.rows - 1 - j : j, column = signs[0] < 0 ? table.columns - 1 - i : i;
+        table.height[static_cast<std::size_t>(j) * table.columns + i] =
+            factor * read[static_cast<std::size_t>(row) * table.columns + column] + offset;
       }
     return table;
   }
 
 private:
-  /// Those of one number; others are passed over.
-  std::map<std::string, double> attributes()
+  void check(const int status, const std::string &what) const
   {
-    std::map<std::string, double> found;
-    for (std::uint64_t left = in_.list(NetcdfWord::attributes); left > 0; --left) {
-      const std::string name = in_.name();
-      const std::uint64_t type = in_.whole(4), count = in_.count(), size = in_.size_of(type);
-      if (count > file_.bytes.size()) in_.fail();
-      const std::size_t begin = in_.at();
-      in_.skip(count * size);
-      const std::size_t end = in_.at();
-      if (count != 1 || type == NetcdfWord::text) continue;
-      in_.go_to(begin);
-      found[name] = in_.number(type);
-      in_.go_to(end);
-    }
-    return found;
+    RPC_REQUIRE(status == NC_NOERR, file_.where << "is damaged: NetCDF cannot " << what << " it ("
+                                                << nc_strerror(status) << "). Write it again");
   }
-  std::vector<double> numbers(const NetcdfVariable &v, const std::uint64_t rows, const std::uint64_t columns)
+  std::string name_of(const int variable) const
   {
-    RPC_REQUIRE(rows > 0 && columns > 0, file_.where << "has an array " << shown_name(v.name)
-                                                     << " along a dimension that may grow, or of length 0. Fix it: "
-                                                     << "ncks --fix_rec_dmn NAME in.nc out.nc");
-    in_.go_to(v.begin);
-    const std::uint64_t most = file_.bytes.size();
-    if (rows > most || columns > most || rows * columns > most) in_.fail();
-    in_.require_room(rows * columns * in_.size_of(v.type));
-    std::vector<double> read(rows * columns);
-    for (double &value : read) value = in_.number(v.type);
-    return read;
+    char name[NC_MAX_NAME + 1] = {};
+    check(nc_inq_varname(id_, variable, name), "read");
+    return name;
   }
-  bool is_coordinate(const NetcdfVariable &v) const
+  std::vector<int> dimensions_of(const int variable) const
   {
-    return v.dimension.size() == 1 && v.name == dimensions_[v.dimension[0]].name;
+    int count = 0;
+    check(nc_inq_varndims(id_, variable, &count), "read");
+    std::vector<int> dimensions(count);
+    if (count > 0) check(nc_inq_vardimid(id_, variable, dimensions.data()), "read");
+    return dimensions;
   }
-  static std::string shown_name(std::string name)
+  std::size_t length_of(const int dimension) const
   {
-    for (char &c : name)
-      if (c < ' ' || c > '~') c = '?';
-    return "\"" + name.substr(0, 40) + "\"";
+    std::size_t length = 0;
+    check(nc_inq_dimlen(id_, dimension, &length), "read");
+    return length;
+  }
+  double attribute(const int variable, const char *const name, const double standard) const
+  {
+    std::size_t length = 0;
+    nc_type type = NC_NAT;
+    double value = standard;
+    if (nc_inq_att(id_, variable, name, &type, &length) != NC_NOERR || length != 1 || type == NC_CHAR) return standard;
+    check(nc_get_att_double(id_, variable, name, &value), "read");
+    return value;
+  }
+  bool is_coordinate(const int variable) const
+  {
+    const std::vector<int> dimensions = dimensions_of(variable);
+    char name[NC_MAX_NAME + 1] = {};
+    if (dimensions.size() != 1) return false;
+    check(nc_inq_dimname(id_, dimensions[0], name), "read");
+    return name_of(variable) == name;
   }
   /// The only array of heights, or the one that is called so.
-  const NetcdfVariable &heights() const
+  int heights() const
   {
-    std::vector<const NetcdfVariable *> found;
+    int count = 0;
+    check(nc_inq_nvars(id_, &count), "read");
+    std::vector<int> found;
     std::vector<std::string> names;
-    for (const NetcdfVariable &v : variables_) {
-      const std::size_t dimensions = v.dimension.size();
-      const bool fits = dimensions == 2 || (dimensions == 1 && file_.dim == 2);
-      if (v.type == NetcdfWord::text || is_coordinate(v) || !fits) continue;
-      found.push_back(&v);
-      names.push_back(shown_name(v.name));
+    for (int variable = 0; variable < count; ++variable) {
+      nc_type type = NC_NAT;
+      check(nc_inq_vartype(id_, variable, &type), "read");
+      const std::size_t dimensions = dimensions_of(variable).size();
+      if (type == NC_CHAR || is_coordinate(variable) || !(dimensions == 2 || (dimensions == 1 && file_.dim == 2)))
+        continue;
+      found.push_back(variable);
+      names.push_back(name_of(variable));
     }
     RPC_REQUIRE(!found.empty(), file_.where << "has no array of "
                                             << (file_.dim == 2 ? "one or two dimensions" : "two dimensions")
                                             << ". Write the heights as z(y, x)");
-    if (found.size() == 1) return *found[0];
+    if (found.size() == 1) return found[0];
     for (const char *const known : {"z", "height", "heights"})
-      for (const NetcdfVariable *const v : found)
-        if (v->name == known) return *v;
+      for (std::size_t k = 0; k < names.size(); ++k)
+        if (names[k] == known) return found[k];
     throw Error(ExitCode::bad_input,
                 file_.where + "has several arrays, " + join(names) +
                     ", and none is called z, height or heights. Take one out: ncks -v NAME in.nc out.nc");
   }
-  /// The step along a dimension, and its sign; 0 where the file does not say it.
-  std::array<double, 2> spacing_along(const NetcdfDimension &dimension)
+  std::array<double, 2> spacing_along(const int dimension) const
   {
-    for (const NetcdfVariable &v : variables_)
-      if (v.type != NetcdfWord::text && is_coordinate(v) && v.name == dimension.name) {
-        const auto [step, sign] = even_spacing(file_, shown_name(v.name), numbers(v, 1, dimension.length));
-        return {step, sign == 0 ? 1 : sign};
-      }
-    return {0, 1};
+    char name[NC_MAX_NAME + 1] = {};
+    check(nc_inq_dimname(id_, dimension, name), "read");
+    int variable = -1;
+    if (nc_inq_varid(id_, name, &variable) != NC_NOERR || !is_coordinate(variable)) return {0, 1};
+    const std::size_t length = length_of(dimension);
+    RPC_REQUIRE(is_hdf5_ || length <= file_.bytes.size(), file_.where << "is cut off. Write it again");
+    std::vector<double> places(length);
+    check(nc_get_var_double(id_, variable, places.data()), "read");
+    const auto [step, sign] = even_spacing(file_, name, places);
+    return {step, sign == 0 ? 1 : sign};
   }
 
   const HeightFile &file_;
-  NetcdfBytes in_;
-  std::vector<NetcdfDimension> dimensions_;
-  std::vector<NetcdfVariable> variables_;
+  int id_ = -1;
+  bool is_hdf5_ = false;
 };
+
+/// Numbers of a table, one after the other.
+std::string packed(const HeightTable &table)
+{
+  std::vector<double> numbers{double(table.columns), double(table.rows), table.spacing[0], table.spacing[1]};
+  numbers.insert(numbers.end(), table.height.begin(), table.height.end());
+  return {reinterpret_cast<const char *>(numbers.data()), numbers.size() * sizeof(double)};
+}
+
+HeightTable unpacked_table(const std::string &bytes)
+{
+  std::vector<double> numbers(bytes.size() / sizeof(double));
+  std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(double));
+  HeightTable table;
+  table.columns = static_cast<int>(numbers[0]);
+  table.rows = static_cast<int>(numbers[1]);
+  table.spacing = {numbers[2], numbers[3]};
+  table.height.assign(numbers.begin() + 4, numbers.end());
+  return table;
+}
 
 } // namespace
 
 HeightTable read_netcdf(const HeightFile &file)
 {
-  return NetcdfHeights(file).table();
+  // Damaged files break down the library, version 4.9.
+  const std::optional<std::string> bytes = in_child_process([&] { return packed(NetcdfHeights(file).table()); });
+  RPC_REQUIRE(bytes, file.where << "is damaged: the NetCDF library broke down on it. Write it again");
+  return unpacked_table(*bytes);
 }
 
 } // namespace rpc::contact
