@@ -84,11 +84,14 @@ KOKKOS_INLINE_FUNCTION int kind_of_slip(const Slip slip, const Along &h, const i
   return dim == 2 && (h(0) != 0 ? h(0) : h(1)) < 0 ? 2 : 1;
 }
 
-/// What a point that cannot stick does: it slips on, or begins with the direction of the traction that it bore.
+/// What a point that cannot stick does: in the plane it slips along its slip, for it cannot turn by way of sticking; in space it slips on, or
+/// begins with the direction of the traction that it bore.
+/// @param e     slip [m]
 /// @param q, s  traction on the branch of its present state, and what friction bears [Pa]
-KOKKOS_INLINE_FUNCTION SlipBranch slip_instead(const SlipBranch &now, const Along &turned, const Along &q,
-                                               const double s)
+KOKKOS_INLINE_FUNCTION SlipBranch slip_instead(const SlipBranch &now, const Along &turned, const Along &e,
+                                               const Along &q, const double s, const int dim)
 {
+  if (dim == 2) return {Slip::slip, e.unit()};
   if (now.state == Slip::slip) return {Slip::slip, turned};
   return {Slip::slip, s > 0 ? admissible_friction(q, s).scaled(1 / s) : q.unit()};
 }
@@ -118,7 +121,8 @@ void choose_next_slip(const SmoothedPoints &s, const Vector &u, const ActiveSet 
                                       at.penetration, admissible(p(i), c.law(i)), own(i), bound, f);
         always(i) = own(i) * prescribed_slip(at.slip, NormalAt{c, i}, FreeAt{c.friction, i}, c.dim).length() > bound;
         if (branch.state == Slip::stick && always(i))
-          branch = slip_instead(now.branch(i), turned, row(traction, i), friction_bound(admissible(p(i), c.law(i)), f));
+          branch = slip_instead(now.branch(i), turned, at.slip, row(traction, i),
+                                friction_bound(admissible(p(i), c.law(i)), f), c.dim);
         slips(i) = branch.state;
         set_row(direction, i, branch.direction);
         if (c.fixed(i)) return;
