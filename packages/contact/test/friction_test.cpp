@@ -226,6 +226,23 @@ TEST(Friction, DirectionOfSlipObeysTheLinearizedLaw) // (12.13): K (now - u) = s
   EXPECT_NEAR(std::log2(first / half), 2, 0.1); // from g = h on it is Newton's
 }
 
+TEST(Friction, PointThatCannotStickHasAnExactBlockBelowItsBound) // (12.13): r|e| = 0.4 < s = 1.2 here
+{
+  const Along u{{0.005, 0, -0.008}};
+  const auto respond = [](const Along &x) {
+    return on_branch(x, State::yielding, {Slip::slip, at(x).slip.unit(), true}, {3}, {0.4, 0, inf});
+  };
+  const Along e = at(u).slip;
+  ASSERT_LT(r * e.length(), 1.2);
+  const Response friction = respond(u),
+                 contact = respond_on_branch(State::yielding, at(u), lambda, r, Foundation{3}, Direction{}, weight, 3);
+  for (const int k : {0, 2}) // along the slip, whatever the multiplier is
+    EXPECT_NEAR(friction.force[k] - contact.force[k], weight * 1.2 * e.unit()(k), 1e-15);
+  const double coarse = errors_of_differences(respond, u, 2e-4).block,
+               fine = errors_of_differences(respond, u, 1e-4).block;
+  EXPECT_NEAR(std::log2(coarse / fine), 2, 0.2);
+}
+
 TEST(Friction, SymmetricPartOfTheLaggingDirectionIsNotNegative)
 {
   const Along u{{0.05, 0, -0.08}}, h = trial(u).unit();

@@ -180,7 +180,8 @@ StepSolution LoadHistory::advance_in_parts(const double t, const Halvings &left,
 {
   const Remembered before = kept_;
   StepOptions options = options_;
-  options.low_penalties = left.failures == 0; // what else could be tried is to halve the step
+  options.low_penalties = left.failures == 0;         // what else could be tried is to halve the step
+  options.from_rest = left.failures == max_halvings_; // parts have solutions near by
   StepSolution s = solve(t, options, progress, now);
   const double from = before.memory ? before.memory->time : time_at_rest(t);
   const double half = 0.5 * (from + t);

@@ -65,6 +65,7 @@ StepSolution solve_with(const Problem &problem, const Step &step, SolverState &s
     Prediction prediction = predict(step, iterate, *u, starts); // (5.11), (11.5)
     s.not_predicted = std::move(prediction.reason);
     s.levels = std::move(prediction.work);
+    s.start = prediction.nearest;
     if (prediction.start) predicted = std::move(prediction.by);
   }
   {
@@ -119,14 +120,15 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
                         const Starts &starts, const Progress &progress)
 {
   StepSolution s = solve_with(problem, step, state, options, false, starts, progress);
-  if (!s.uzawa.friction_unsettled || !options.low_penalties) return s;
-  StepSolution again = solve_with(problem, step, state, options, true, starts, progress);
-  if (!again.uzawa.converged) {
-    add_work(again, s);
-    return s;
-  }
-  add_work(s, again);
-  return again;
+  const auto again = [&](const bool low_penalties, const Starts &from) {
+    StepSolution other = solve_with(problem, step, state, options, low_penalties, from, progress);
+    if (other.uzawa.converged) std::swap(other, s);
+    add_work(other, s);
+  };
+  if (s.uzawa.friction_unsettled && options.from_rest && s.start + 1 < starts.states.size())
+    again(false, {{starts.states.back()}, {}}); // there may be no solution near by
+  if (s.uzawa.friction_unsettled && options.low_penalties) again(true, starts);
+  return s;
 }
 
 namespace
@@ -136,7 +138,7 @@ namespace
 
 /// Starts from the state whose displacement and multipliers are nearest to equilibrium.
 /// @return whether that is so near that a prediction would be no better
-bool start_from_nearest(Iterate &iterate, Vector &u, const Starts &starts)
+bool start_from_nearest(Iterate &iterate, Vector &u, const Starts &starts, std::size_t &nearest)
 {
   const std::vector<contact::ContactState> &states = starts.states;
   const Vector rest(u, Teuchos::Copy);
@@ -148,7 +150,7 @@ bool start_from_nearest(Iterate &iterate, Vector &u, const Starts &starts)
     take(states[0]);
     return true;
   }
-  std::size_t nearest = 0;
+  nearest = 0;
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (std::size_t k = 0; k < states.size(); ++k) {
     take(states[k]);
@@ -172,12 +174,13 @@ Prediction predict(const Step &step, Iterate &iterate, Vector &u, const Starts &
     prediction.reason = "nothing loads the body"; // the start is the solution; a coarser mesh would see other gaps
     return prediction;
   }
-  const bool near = !starts.states.empty() && start_from_nearest(iterate, u, starts);
+  const bool near = !starts.states.empty() && start_from_nearest(iterate, u, starts, prediction.nearest);
   if (near) return prediction;
   if (starts.predict)
     prediction = starts.predict();
   else
     prediction.reason = "there is none";
+  if (starts.states.empty() || prediction.start) prediction.nearest = starts.states.size();
   if (prediction.start) iterate.start_from(*prediction.start, u);
   if (!starts.states.empty()) prediction.reason.clear();
   return prediction;

@@ -33,6 +33,8 @@ struct StepOptions {
   UzawaOptions uzawa;
   solver::NewtonOptions newton;
   PredictionOptions prediction;
+  bool from_rest =
+      true; ///< where friction's states do not settle, the step is tried once more from the last of the given starts
   bool low_penalties =
       false; ///< where friction's states do not settle, the step is tried once more with low penalties (12.12a)
 };
@@ -67,6 +69,7 @@ struct Prediction {
   std::string reason; ///< why there is none
   PredictedBy by;
   std::vector<LevelWork> work; ///< on the meshes that were asked, from the coarsest
+  std::size_t nearest = 0;     ///< which of the given states is nearest to equilibrium
 };
 
 /// Where a step may start from.
@@ -92,6 +95,7 @@ struct StepSolution {
   FoundBy found_by = FoundBy::choices;
   int line_search_steps = 0;                        ///< Newton's, where the active-set iteration was not enough
   int coarse_choices = 0;                           ///< steps to states that a coarser mesh chose
+  std::size_t start = 0;                            ///< which of the given states it has started from, if one of them
   GO raised_penalties = 0;                          ///< contact points whose penalty was too weak for friction
   std::vector<LevelWork> levels;                    ///< coarser meshes that predicted the solution, from the coarsest
   std::string not_predicted;                        ///< why no coarser mesh did; empty if one did
