@@ -265,7 +265,7 @@ ParameterList with_bytes(const ParameterList &marked)
 /// Refuses an outermost list without entries that has those beside it that are to be its own, as a deck has whose lines have lost their blanks.
 void check_outermost(const std::string &path, const ParameterList &list, const ParameterList &valid)
 {
-  if (list.numParams() == 0 || valid.isParameter(list.name(list.begin()))) return;
+  if (list.numParams() == 0 || valid.numParams() == 0 || valid.isParameter(list.name(list.begin()))) return;
   const Teuchos::ParameterEntry &first = list.entry(list.begin());
   if (first.isList() && Teuchos::getValue<ParameterList>(first).numParams() == 0)
     refuse_line(path, 1,
@@ -295,7 +295,9 @@ ParameterList read_yaml(const std::string &path, const std::string &given, const
     text += "\n";
   }
   try {
-    const ParameterList list = with_bytes(*Teuchos::getParametersFromYamlString(text));
+    const ParameterList read = *Teuchos::getParametersFromYamlString(text);
+    const bool marked = with_bytes_marked(given).size() > given.size();
+    const ParameterList list = marked ? with_bytes(read) : read;
     if (anonymous) check_outermost(path, list, valid);
     return list;
   } catch (const Error &) {
