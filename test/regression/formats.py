@@ -12,6 +12,7 @@ from rpc_run import SOURCE, RpcTestCase
 DATA = SOURCE / "packages" / "mesh" / "test" / "data"
 FORCE = 11.3752530895  # of the square below [N/m]
 HAS_GMSH = os.environ.get("RPC_GMSH", "ON") == "ON"
+HAS_NETCDF = subprocess.run(["python3", "-c", "import netCDF4"], capture_output=True).returncode == 0
 HAS_MESHIO = subprocess.run(["python3", "-c", "import meshio, h5py"], capture_output=True).returncode == 0
 
 SQUARE = """square:
@@ -76,6 +77,19 @@ class Formats(RpcTestCase):
                 one, two = ([each[key]] if not isinstance(each[key], list) else each[key] for each in (first, second))
                 for x, y in zip(one, two):
                     self.assertAlmostEqual(x, y, delta=1e-12 * max(abs(v) for v in one), msg=f"{mesh}: {key}")
+
+    @unittest.skipUnless(HAS_NETCDF, "python3 has no netCDF4")
+    def test_faces_of_shells_in_side_sets_are_left_out(self):
+        import netCDF4
+        shutil.copy(DATA / "two_squares.exo", self.folder)
+        with netCDF4.Dataset(self.folder / "two_squares.exo", "r+") as file:
+            for name in ("connect1", "connect2"):
+                file[name].elem_type = "SHELL"
+            file["side_ss1"][:] = 1
+            file["side_ss2"][:] = 4
+        info = self.rpc("--mesh-info=two_squares.exo").stdout
+        self.assertRegex(info, "1 entries of side set [0-9]+ are faces of shells, which bound no body: they are left out")
+        self.assertIn('side        "right": 1 facet', info)
 
     def test_what_is_mended_changes_nothing(self):
         text = (DATA / "square_41.msh").read_text()

@@ -302,7 +302,7 @@ def scenes(source):
     for mesh, deck, more in (("square.med", SQUARE, ""), ("square.vtk", SQUARE, PLANES)):
         texts[f"{mesh.replace('.', '_')}.yaml"] = [deck.replace("MESH", mesh).replace("MORE", more), data / mesh]
     for mesh, surfaces in (("cylinder.iges", (6, 5)), ("cylinder.brep", (3, 2))):
-        deck = replaced(PIN, (r"\[2\]", f"[{surfaces[0]}]"), (r"\[3\]", f"[{surfaces[1]}]"))
+        deck = replaced(PIN, ("Size: 6", "Size Factor: 3.5"), (r"\[2\]", f"[{surfaces[0]}]"), (r"\[3\]", f"[{surfaces[1]}]"))
         texts[f"{mesh.replace('.', '_')}.yaml"] = [deck.replace("MESH", mesh), data / mesh]
     texts["pin_step.yaml"] = [PIN.replace("MESH", "pin.step"), source / "doc/tutorial/pin.step"]
     texts["box_stl.yaml"] = [BOX.replace("MESH", "box.stl"), ("box.stl", stl_of_box())]

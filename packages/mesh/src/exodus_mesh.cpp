@@ -175,8 +175,10 @@ private:
       }
       block.type = gmsh_type_of(type, width);
       if (block.type == 0)
-        refuse(label + " has cells of type \"" + printable(type) + "\" with " + std::to_string(width) +
-               " nodes, which are unknown");
+        refuse(
+            label + " has cells of type \"" + printable(type) + "\" with " + std::to_string(width) +
+            " nodes, which are unknown; triangles of 3 or 6 nodes, quadrilaterals of 4, 8 or 9, tetrahedra of 4 or 10 "
+            "and hexahedra of 8, 20 or 27 can be read");
       block.width = static_cast<int>(width);
       block.faces = is_shell(type) ? 2 : 0;
       block.nodes.resize(plausible(block.count * width, "nodes of the cells of " + label));
@@ -197,7 +199,7 @@ private:
   {
     std::string begin = type.substr(0, 3);
     for (char &c : begin) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    return begin == "SHE" || (begin == "TRI" && in_space_);
+    return begin == "SHE" || (begin == "TRI" && (in_space_ || type.size() > 7)); // TRISHELL3
   }
 
   void take_block(const ExodusBlock &block, const std::int64_t id)
@@ -231,6 +233,8 @@ private:
       check(ex_get_set_param(file_, EX_SIDE_SET, id, &size, &factors), label);
       Integers cells(plausible(size, "facets of " + label)), sides(cells.size());
       if (size > 0) check(ex_get_set(file_, EX_SIDE_SET, id, cells.data(), sides.data()), label);
+      if (std::any_of(blocks_.begin(), blocks_.end(), [](const ExodusBlock &b) { return b.faces > 0; }))
+        leave_out_faces(label, cells, sides);
       const int group = add_group(contents_.dim - 1, id, name_of(EX_SIDE_SET, id));
       std::map<int, GmshElements> by_type;
       for (std::size_t f = 0; f < cells.size(); ++f) take_facet(label, cells[f], sides[f], by_type);
@@ -240,6 +244,25 @@ private:
         contents_.elements.push_back(std::move(elements));
       }
     }
+  }
+
+  /// The two faces of a shell are no facets of a body.
+  void leave_out_faces(const std::string &label, Integers &cells, Integers &sides)
+  {
+    std::size_t kept = 0;
+    for (std::size_t f = 0; f < cells.size(); ++f) {
+      const auto of_shell = [&](const ExodusBlock &b) {
+        return b.faces >= sides[f] && sides[f] > 0 && cells[f] > b.first && cells[f] <= b.first + b.count;
+      };
+      if (std::any_of(blocks_.begin(), blocks_.end(), of_shell)) continue;
+      cells[kept] = cells[f];
+      sides[kept++] = sides[f];
+    }
+    if (kept < cells.size())
+      contents_.notes.push_back(std::to_string(cells.size() - kept) + " entries of " + label +
+                                " are faces of shells, which bound no body: they are left out");
+    cells.resize(kept);
+    sides.resize(kept);
   }
 
   void take_facet(const std::string &label, const std::int64_t cell, const std::int64_t side,

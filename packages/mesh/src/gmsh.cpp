@@ -62,6 +62,8 @@ std::string read_text(const std::string &where, const std::string &path)
   RPC_REQUIRE(open && !file.bad() && !fs::is_directory(path, ignored),
               where << "cannot be opened: "
                     << (fs::is_directory(path, ignored) ? "it is a folder" : std::strerror(errno)));
+  RPC_REQUIRE_CODE(text.rfind("version https://git-lfs.github.com/spec/", 0) != 0, ExitCode::bad_mesh,
+                   where << "is a pointer of Git LFS in place of the file; git lfs pull fetches it");
   return text;
 }
 
@@ -101,10 +103,15 @@ bool needs_end(const std::string &code)
 std::string complaint_remedy(const std::string &file, const std::string &complaint)
 {
   static const std::regex syntax(R"(line (\d+): syntax error \((.*)\).*)"), variable(R"(.*Unknown variable '(.*)'.*)"),
-      unknown(R"(.*Unknown .*)"), no_file(R"(.*Unable to open file.*)");
+      unknown(R"(.*Unknown .*)"), no_file(R"(.*Unable to open file.*)"),
+      graphical(R"(.*graphical interface context.*)");
   std::smatch found;
   if (std::regex_match(complaint, found, variable))
     return ". Write " + found[1].str() + " = ...; before it is used, or correct the name";
+  if (complaint.find("for parametrization") != complaint.npos)
+    return ". gmsh cannot divide this surface of triangles: give a STEP file, or a mesh with cells";
+  if (std::regex_match(complaint, graphical))
+    return ". Leave out the Print that asks for it: rpc needs the geometry alone";
   if (std::regex_match(complaint, no_file))
     return ". Files are looked for beside the .geo: name this one, or its whole path";
   if (std::regex_match(complaint, unknown)) return ". Define it in a line before that one, or correct its number";
@@ -143,6 +150,13 @@ std::string complaint_remedy(const std::string &file, const std::string &complai
          (known || meant.empty()
               ? " Look for a word, a bracket, a comma or a \";\" that is wrong or missing there or before"
               : meant);
+}
+
+/// Whether gmsh may end itself before the last line.
+bool has_exit(const std::string &geo)
+{
+  static const std::regex statement(R"((^|[\n;{}])\s*Exit\s*;)");
+  return std::regex_search(geo, statement);
 }
 
 /// @param[out] again  whether another attempt may do better where this one fails
@@ -249,7 +263,14 @@ MeshData meshed_geometry(const std::string &where, const GmshOptions &options)
 {
   const std::string text = read_text(where, options.file);
   if (format_of(options.file) == MeshFormat::geo) check_last_line(where, text);
-  MeshData mesh = made_by_gmsh(where, options);
+  MeshData mesh;
+  try {
+    mesh = made_by_gmsh(where, options);
+  } catch (const Error &refused) {
+    const std::string what = refused.what();
+    if (what.find("gmsh ended without a mesh") == what.npos || !has_exit(text)) throw;
+    throw Error(refused.code(), what + ". The .geo has Exit;, which ends gmsh before: leave it out");
+  }
   if (format_of(options.file) != MeshFormat::shapes) return mesh;
   const std::string note = note_on_unit(mesh, options.file, options.length_unit);
   if (!note.empty()) mesh.notes.push_back(note);
@@ -265,7 +286,9 @@ GmshContents contents_of_mesh(const std::string &where, const GmshOptions &optio
   if (format == MeshFormat::exodus) return read_exodus_mesh(where, options.file);
   if (format == MeshFormat::meshio) return read_by_meshio(where, options.file);
   bool unused = false;
-  return answer_of_gmsh(where, options, request_for(options), unused);
+  GmshContents contents = answer_of_gmsh(where, options, request_for(options), unused);
+  contents.kind.fill("group");
+  return contents;
 }
 
 MeshData read_mesh_file(const std::string &where, const GmshOptions &options)
@@ -273,7 +296,6 @@ MeshData read_mesh_file(const std::string &where, const GmshOptions &options)
   try {
     return mesh_of_gmsh(where, contents_of_mesh(where, options), false);
   } catch (const BentCell &refused) {
-    if (format_of(options.file) != MeshFormat::msh) throw;
     throw Error(refused.code(), std::string(refused.what()) + ", or set Mesh.HighOrderOptimize = 1 in gmsh");
   }
 }

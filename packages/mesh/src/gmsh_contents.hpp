@@ -72,7 +72,9 @@ struct GmshContents {
   std::vector<std::string> notes;     ///< what the user should know of how the file was read
   /// What messages call groups of points, curves, surfaces and volumes.
   std::array<std::string, 4> kind = {"physical point", "physical curve", "physical surface", "physical volume"};
-  bool node_sets = false;                   ///< groups of points are sets of any nodes: those of whole facets are sides
+  bool node_sets = false; ///< groups of points are sets of any nodes: those of whole facets are sides
+  std::size_t last_node =
+      std::size_t(-1); ///< tags beyond are nodes that the file lacks, in the middle of cells and faces
   std::vector<std::size_t> ungrouped_nodes; ///< of a .msh: tags of the nodes of cells that are not part of the body
 };
 

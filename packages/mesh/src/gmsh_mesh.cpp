@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
@@ -72,13 +73,19 @@ void check_groups(const std::string &where, const GmshContents &contents)
   }
 }
 
+/// What to do where there is no geometry to be meshed again.
+constexpr const char *without_geometry =
+    "; of a mesh alone ParaView's filter Tetrahedralize makes triangles or tetrahedra (save them as .vtu)";
+
 /// What to do about cells of a type that cannot be read, if there is something.
 std::string remedy_for_type(const int number)
 {
   const GmshType *const type = gmsh_type(number);
   const std::string shape = type ? type->shape : "";
   if (shape == "Prism" || shape == "Pyramid")
-    return "; without Recombine there are tetrahedra, and with Mesh.SubdivisionAlgorithm = 2 besides hexahedra";
+    return std::string("; in gmsh without Recombine there are tetrahedra, and with Mesh.SubdivisionAlgorithm = 2 "
+                       "besides hexahedra") +
+           without_geometry;
   return "";
 }
 
@@ -110,10 +117,11 @@ Element element_of(const std::string &where, const GmshContents &contents)
     return text;
   };
   for (const auto &elements : contents.elements)
-    RPC_REQUIRE_CODE(
-        contents.groups[elements.group].dim != contents.dim || elements.type == first->type, ExitCode::bad_mesh,
-        where << "cells must be of one kind, got " << summary(first->type) << " and " << summary(elements.type)
-              << "; a .geo that recombines may need Mesh.SubdivisionAlgorithm = " << contents.dim - 1);
+    RPC_REQUIRE_CODE(contents.groups[elements.group].dim != contents.dim || elements.type == first->type,
+                     ExitCode::bad_mesh,
+                     where << "cells must be of one kind, got " << summary(first->type) << " and "
+                           << summary(elements.type) << "; a .geo that recombines may need Mesh.SubdivisionAlgorithm = "
+                           << contents.dim - 1 << without_geometry);
   return *element_of_gmsh_type(first->type);
 }
 
@@ -165,6 +173,22 @@ void take_nodes(const GmshContents &contents, TaggedMesh &draft)
     draft.mesh.coords.insert(draft.mesh.coords.end(), x, x + contents.dim);
     if (contents.dim == 2) draft.z.push_back(x[2]);
   }
+}
+
+/// A mesh in the plane at one z other than 0 lies in the plane.
+void drop_height(TaggedMesh &draft)
+{
+  if (draft.z.empty()) return;
+  double size = 0;
+  for (const double x : draft.mesh.coords) size = std::max(size, std::abs(x - draft.mesh.coords[0]));
+  const double height = draft.z[0];
+  const bool flat =
+      std::all_of(draft.z.begin(), draft.z.end(), [&](const double z) { return std::abs(z - height) <= 1e-10 * size; });
+  if (!flat || std::abs(height) <= 1e-10 * size) return;
+  draft.z.assign(draft.z.size(), 0.);
+  std::ostringstream note;
+  note << "all nodes have z = " << height << ": the body lies in the plane";
+  draft.mesh.notes.push_back(note.str());
 }
 
 /// Leaves no nodes of cells in the contents: of a large body they take much memory.
@@ -237,6 +261,7 @@ MeshData mesh_of_gmsh(const std::string &where, GmshContents contents, const boo
   take_nodes(contents, draft);
   take_cells(contents, draft);
   check_blocks(contents, draft);
+  if (!any_nodes) drop_height(draft);
   check_nodes(draft);
   turn_mirrored_cells(draft);
   check_cells(draft);

@@ -64,7 +64,8 @@ int facet_of(const TaggedMesh &draft, const Entities &facets, const SideElement 
   RPC_REQUIRE_CODE(num_cells == 1, ExitCode::bad_mesh,
                    label() << "lies inside the body, between the cells " << draft.cell_tag[facets.cell(*facet, 0)]
                            << " and " << draft.cell_tag[facets.cell(*facet, num_cells - 1)]
-                           << "; a side must be part of the boundary, and others of this group are");
+                           << "; a side must be part of the boundary, and others of this group are: give those inside "
+                              "a group of their own");
   if (element.middle.empty()) return *facet;
   std::vector<std::size_t> own = element.middle, of_cell;
   const std::vector<int> nodes = nodes_of_facet(draft.mesh, facets.cell(*facet, 0), facets.ordinal(*facet, 0));
@@ -144,16 +145,18 @@ void take_side(const GmshContents &contents, const int group, const Entities &fa
 }
 
 /// Whether nodes are those of whole facets of the boundary: they become a side then, unless there is one of that name.
-bool is_side(const PointData &set, const Entities &facets, TaggedMesh &draft)
+/// @param last_node  the tags of nodes that the file lacks are beyond
+bool is_side(const PointData &set, const std::size_t last_node, const Entities &facets, TaggedMesh &draft)
 {
   std::vector<char> in_set(draft.mesh.num_nodes(), 0), covered(draft.mesh.num_nodes(), 0);
   for (const int node : set.node) in_set[node] = 1;
+  const auto fits = [&](const int node) { return in_set[node] || draft.node_tag[node] > last_node; };
   SideData side{set.name, {}, {}};
   for (int f = 0; f < facets.size(); ++f) {
     if (facets.num_cells_at(f) != 1) continue;
     const std::vector<int> nodes = nodes_of_facet(draft.mesh, facets.cell(f, 0), facets.ordinal(f, 0));
-    if (!std::all_of(nodes.begin(), nodes.end(), [&](const int node) { return in_set[node]; })) continue;
-    for (const int node : nodes) covered[node] = 1;
+    if (!std::all_of(nodes.begin(), nodes.end(), fits)) continue;
+    for (const int node : nodes) covered[node] = in_set[node];
     side.cell.push_back(facets.cell(f, 0));
     side.ordinal.push_back(facets.ordinal(f, 0));
   }
@@ -218,7 +221,7 @@ void take_points(const GmshContents &contents, const Entities &facets, TaggedMes
     set.name = contents.groups[group].name;
     std::sort(set.node.begin(), set.node.end());
     set.node.erase(std::unique(set.node.begin(), set.node.end()), set.node.end());
-    if (contents.node_sets && is_side(set, facets, draft)) continue;
+    if (contents.node_sets && is_side(set, contents.last_node, facets, draft)) continue;
     draft.mesh.points.push_back(set);
   }
 }

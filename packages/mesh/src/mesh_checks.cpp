@@ -96,11 +96,12 @@ void check_distinct(const TaggedMesh &draft, const std::array<Point, 2> &box)
   }
   std::sort(cubes.begin(), cubes.end());
   const auto compare = [&](const int node, const int near) {
-    RPC_REQUIRE_CODE(near == node || distance(point_of(draft, node), point_of(draft, near)) > tolerance,
-                     ExitCode::bad_mesh,
-                     draft.where << label_of_node(draft, std::min(node, near)) << " and node "
-                                 << draft.node_tag[std::max(node, near)]
-                                 << " are at one place; join the parts (BooleanFragments, or Coherence Mesh;)");
+    RPC_REQUIRE_CODE(
+        near == node || distance(point_of(draft, node), point_of(draft, near)) > tolerance, ExitCode::bad_mesh,
+        draft.where << label_of_node(draft, std::min(node, near)) << " and node "
+                    << draft.node_tag[std::max(node, near)]
+                    << " are at one place; join the parts (in gmsh BooleanFragments, or Coherence Mesh;, in "
+                       "Cubit imprint and merge, in Salome Merge Nodes)");
   };
   const auto search = [&](const std::int64_t dz, const std::int64_t dx) {
     auto first = cubes.begin(); // of the column beside a node's own: both run upwards
@@ -272,8 +273,11 @@ void check_nodes(const TaggedMesh &draft)
                    draft.where << "the body's size must be " << least_size << " to " << greatest_size << " [m], got "
                                << size);
   for (std::size_t n = 0; n < draft.z.size(); ++n)
-    RPC_REQUIRE_CODE(std::abs(draft.z[n]) <= 1e-10 * size, ExitCode::bad_mesh,
-                     draft.where << label_of_node(draft, static_cast<int>(n)) << " is off the plane; z must be 0");
+    RPC_REQUIRE_CODE(
+        std::abs(draft.z[n]) <= 1e-10 * size, ExitCode::bad_mesh,
+        draft.where << label_of_node(draft, static_cast<int>(n))
+                    << " is off the plane; z must be 0, or in a mesh the same everywhere. Triangles and "
+                       "quadrilaterals in space are a shell or a skin: a body there has tetrahedra or hexahedra");
   check_distinct(draft, box);
 }
 

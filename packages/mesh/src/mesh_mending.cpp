@@ -154,6 +154,7 @@ void complete_serendipity(const std::string &where, GmshContents &contents)
     if (is_incomplete(elements) && contents.groups[elements.group].dim == contents.dim) cells += elements.tags.size();
   if (cells == 0) return;
   MiddleNodes middles(where, contents);
+  contents.last_node = *std::max_element(contents.node_tags.begin(), contents.node_tags.end());
   for (auto &elements : contents.elements) {
     if (!is_incomplete(elements)) continue;
     const bool face = elements.type == quadrilateral_8;

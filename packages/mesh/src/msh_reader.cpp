@@ -26,7 +26,6 @@ namespace
 {
 
 constexpr const char *blanks = " \t\r\n";
-
 /// A piece of the file for a message.
 std::string in_quotes(const std::string_view piece)
 {
@@ -73,7 +72,8 @@ public:
     const bool good =
         name.size() > 1 && name[0] == '$' &&
         std::all_of(name.begin() + 1, name.end(), [](const unsigned char c) { return std::isalpha(c) != 0; });
-    if (!good) refuse("a section must begin with its name, as $Nodes does, got " + in_quotes(name));
+    const char *const remedy = name[0] == '*' ? "; give a file of Abaqus or CalculiX the ending .inp" : "";
+    if (!good) refuse("a section must begin with its name, as $Nodes does, got " + in_quotes(name) + remedy);
     section_ = name.substr(1);
     return section_;
   }
@@ -183,13 +183,14 @@ bool read_format(Reader &reader)
 
 void read_names(Reader &reader, Draft &draft)
 {
-  static const std::regex form(R"re(\s*([0-3])\s+([1-9]\d{0,8})\s+"(.*)")re");
+  static const std::regex form(R"re(\s*([0-3])\s+([1-9]\d{0,8})\s+"([^"]*)"(?:\s+(.*))?)re");
   for (auto count = reader.text_integer(); count > 0; --count) {
     const std::string line(reader.line());
     std::smatch part;
     if (!std::regex_match(line, part, form))
       reader.refuse("a line must be dimension (0 to 3), number and name in quotes, got " + in_quotes(line));
     draft.groups[{std::stoi(part[1]), std::stoi(part[2])}] = part[3];
+    if (part[4].length() > 0) draft.contents.notes.push_back("words after a name are left out: " + in_quotes(line));
   }
 }
 
@@ -396,15 +397,16 @@ void check_plane(const std::string &where, const GmshContents &contents)
   std::set<std::size_t> used;
   for (const auto &elements : contents.elements)
     if (contents.groups[elements.group].dim == 2) used.insert(elements.nodes.begin(), elements.nodes.end());
-  double size = 0;
+  double size = 0, height = std::nan("");
   for (const double x : contents.coords) size = std::max(size, std::abs(x));
   for (std::size_t n = 0; n < contents.node_tags.size(); ++n) {
+    if (!used.count(contents.node_tags[n])) continue;
     const double *const x = &contents.coords[3 * n];
-    RPC_REQUIRE_CODE(
-        !(std::abs(x[2]) > 1e-10 * size) || !used.count(contents.node_tags[n]), ExitCode::bad_mesh,
-        where << "has no volumes, and node " << contents.node_tags[n] << " at (" << x[0] << ", " << x[1] << ", " << x[2]
-              << ") is off the plane; z must be 0. Of a body in space gmsh writes the volumes if there are "
-                 "no groups, or if one names them: Physical Volume(\"body\") = {...};");
+    if (std::isnan(height)) height = x[2];
+    RPC_REQUIRE_CODE(!(std::abs(x[2] - height) > 1e-10 * size), ExitCode::bad_mesh,
+                     where << "has no volumes, and node " << contents.node_tags[n] << " at (" << x[0] << ", " << x[1]
+                           << ", " << x[2] << ") is off the plane. Of a body in space gmsh writes the volumes "
+                           << "if there are no groups, or if one names them: Physical Volume(\"body\") = {...};");
   }
 }
 

@@ -94,6 +94,27 @@ TEST(ExodusMesh, SidesOfShellsAreNumberedFromTheirFaces)
   expect_noted(read_gmsh({file.path(), 1, 0}), {"side set \"left\" lies inside the body"});
 }
 
+TEST(MeshFormats, APlaneBodyMayLieAtAnyHeight)
+{
+  rpc::test::MshText msh = squares();
+  for (std::string &node : msh.nodes) node.back() = '3';
+  const MeshData mesh = read_text(msh.text());
+  expect_noted(mesh, {"all nodes have z = 3"});
+  EXPECT_EQ(mesh.coords, read_text(squares().text()).coords);
+  msh.nodes[0].back() = '2';
+  expect_error(ExitCode::bad_mesh, {"off the plane", "tetrahedra or hexahedra"}, [&] { read_text(msh.text()); });
+}
+
+TEST(MeshFormats, WhatIsNoMshSaysWhatItIs)
+{
+  expect_error(ExitCode::bad_mesh, {"*NODE", "Abaqus", ".inp"}, [] { read_text("*NODE, NSET=Nall\n1, 0, 0\n"); });
+  expect_error(ExitCode::bad_mesh, {"pointer of Git LFS", "git lfs pull"},
+               [] { read_text("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n"); });
+  rpc::test::MshText msh = squares();
+  msh.names[0] += " lower_dimensional_block";
+  expect_noted(read_text(msh.text()), {"words after a name", "lower_dimensional_block"});
+}
+
 /// Nodes of the one cell by their coordinates' index.
 std::vector<double> node(const MeshData &mesh, const int local)
 {
