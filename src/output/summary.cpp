@@ -3,6 +3,7 @@
 
 #include "output/quantities.hpp"
 #include "output/result_list.hpp"
+#include "rpc/analysis/side_displacements.hpp"
 
 #include <cmath>
 
@@ -179,6 +180,10 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["reaction_force"] = nlohmann::ordered_json::object();
   for (std::size_t k = 0; k < scene.model.dirichlet.size(); ++k)
     json["reaction_force"][scene.model.dirichlet[k].name] = vector_json(s.reactions[k], mesh.dim());
+  json["side_displacement"] = nlohmann::ordered_json::object();
+  if (s.has_results() && s.u != Teuchos::null)
+    for (const auto &side : analysis::side_displacements(s.discretization, *s.u))
+      json["side_displacement"][side.side] = {{"mean", vector_json(side.mean, mesh.dim())}, {"max", side.largest}};
   add_shown(json, analysis::residual_quantities, s.uzawa.residuals, scope);
   json["residual_tolerance"] = scene.step.uzawa.tolerance;
   json["multiplier_change"] = s.uzawa.multiplier_change;
