@@ -132,14 +132,20 @@ void SeldomMeant::note_overlaps(const analysis::Problem &problem, const analysis
 void SeldomMeant::note_held_loads(const analysis::Problem &problem, const analysis::Step &step)
 {
   const mesh::Mesh &mesh = *problem.discretization().mesh;
-  const auto fixed = to_host(step.elastic.dirichlet.fixed);
+  const fem::DirichletDofs &dirichlet = step.elastic.dirichlet;
+  const auto fixed = to_host(dirichlet.fixed);
+  const auto group = to_host(dirichlet.tied ? dirichlet.tied->group : DeviceView<int *>());
+  const auto held_at = [&](const LO unknown) {
+    const bool owned = unknown < static_cast<LO>(group.extent(0));
+    return fixed(unknown) != 0 && !(owned && group(unknown) >= 0);
+  };
   const auto &loads = scene_.model.tractions;
   for (std::size_t k = 0; k < loads.size(); ++k) {
     const std::vector<LO> nodes = mesh.nodes_of(loads[k].side, "Traction->" + loads[k].name + "->Side");
     for (int c = 0; c < mesh.dim(); ++c) {
       if (loads[k].traction[c].is_zero() && loads[k].force[c].is_zero()) continue;
       const bool held =
-          std::all_of(nodes.begin(), nodes.end(), [&](const LO n) { return fixed(mesh.dim() * n + c) != 0; });
+          std::all_of(nodes.begin(), nodes.end(), [&](const LO n) { return held_at(mesh.dim() * n + c); });
       if (sum_all(mesh.comm(), GO(held ? 0 : 1)) > 0) continue;
       notes_.add("the load of \"Traction->" + loads[k].name + "\" along " + "XYZ"[c] +
                  " goes into supports: \"Dirichlet\" prescribes the displacement along " + "XYZ"[c] +

@@ -82,6 +82,9 @@ std::string prescribed_text(const fem::DirichletCondition &condition)
   for (int c = 0; c < 3; ++c)
     if (condition.displacement[c])
       parts.push_back(std::string(component_names[c]) + " = " + field_words(*condition.displacement[c]));
+    else if (condition.force[c])
+      parts.push_back("moved as one by Force " + std::string(component_names[c]) + " = " +
+                      field_words(*condition.force[c]));
   return joined_by(parts, ", ");
 }
 

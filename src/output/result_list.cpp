@@ -175,6 +175,15 @@ std::vector<Result> result_list(const Scene &scene, const Solution &s)
     reaction.line = "reaction at \"" + reaction.entry + "\"";
     all.push_back(reaction);
   }
+  for (std::size_t k = 0; k < scene.model.dirichlet.size() && k < s.displacements.size(); ++k) {
+    const fem::DirichletCondition &condition = scene.model.dirichlet[k];
+    if (!condition.is_moved()) continue;
+    Result displacement = vector_result("force_displacement", s.displacements[k], dim, scope.units.length);
+    displacement.entry = condition.name;
+    displacement.line = "displacement of \"" + condition.name + "\"";
+    displacement.no_bar = "the displacement of a side that a force moves is not estimated";
+    all.push_back(displacement);
+  }
   add_results(all, analysis::body_quantities, s.body, scope);
   Result energy;
   energy.key = "energy_J";

@@ -180,6 +180,10 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["reaction_force"] = nlohmann::ordered_json::object();
   for (std::size_t k = 0; k < scene.model.dirichlet.size(); ++k)
     json["reaction_force"][scene.model.dirichlet[k].name] = vector_json(s.reactions[k], mesh.dim());
+  json["force_displacement"] = nlohmann::ordered_json::object();
+  for (std::size_t k = 0; k < s.displacements.size(); ++k)
+    if (scene.model.dirichlet[k].is_moved())
+      json["force_displacement"][scene.model.dirichlet[k].name] = vector_json(s.displacements[k], mesh.dim());
   json["side_displacement"] = nlohmann::ordered_json::object();
   if (s.has_results() && s.u != Teuchos::null)
     for (const auto &side : analysis::side_displacements(s.discretization, *s.u))

@@ -99,6 +99,13 @@ void require_adaptable(const Task &task)
                   "deck: \"Adapt\" does not go with several foundations of one side, \""
                       << contact[b].path << "\" and \"" << contact[a].path
                       << "\": their errors are not estimated yet. Leave \"Adapt\" out.");
+  for (const auto &condition : task.model.dirichlet)
+    RPC_REQUIRE(
+        !condition.is_moved() || !(task.adapt.estimate || task.adapt.adapts()),
+        "deck: \"Adapt\" does not go with a side that a force moves, \"Dirichlet->"
+            << condition.name
+            << "\": errors are not estimated there yet. Leave \"Adapt\" out, or prescribe the displacement that "
+               "the force has led to.");
 }
 
 } // namespace rpc::adapt

@@ -3,6 +3,7 @@
 
 #include "rpc/contact/law/judgement.hpp"
 #include "rpc/contact/rounding.hpp"
+#include "rpc/contact/tied_points.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/evaluate.hpp"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace rpc::contact
@@ -35,6 +37,7 @@ std::string place(const HostPoints &points, const LO i)
 void take_over_dirichlet(ContactNodes &c, const fem::DirichletDofs &dirichlet, const Comm &comm)
 {
   const auto fixed = dirichlet.fixed;
+  const auto group = dirichlet.tied ? dirichlet.tied->group : DeviceView<int *>();
   const auto value = device_read(*dirichlet.value);
   const ContactNodes nodes = c;
   double largest_gap = 0;
@@ -50,11 +53,13 @@ void take_over_dirichlet(ContactNodes &c, const fem::DirichletDofs &dirichlet, c
   Kokkos::parallel_for(
       "rpc::contact::directions", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
         double length = 0, free_gap = nodes.gap(i) + nodes.dent(i); // (3.4), (11.1)
+        bool tied = false;
         for (int k = 0; k < nodes.dim; ++k) {
           const LO dof = nodes.dof(i, k);
           if (fixed(dof)) free_gap -= nodes.normal(i, k) * value(dof);
           nodes.direction(i, k) = fixed(dof) ? 0 : nodes.normal(i, k);
           length += nodes.direction(i, k) * nodes.direction(i, k);
+          tied = tied || (group.extent(0) > 0 && group(dof) >= 0);
         }
         // A remainder of rounding size is no direction to push in.
         const bool weightless = nodes.weight(i) == 0;
@@ -63,6 +68,8 @@ void take_over_dirichlet(ContactNodes &c, const fem::DirichletDofs &dirichlet, c
         const bool touches = free_gap < rounding && free_gap > -rounding && leaves_pressure_open(nodes.law(i));
         const bool open_to_choice = weightless || touches;
         nodes.free_gap(i) = nodes.fixed(i) && open_to_choice ? 0 : free_gap;
+        if (nodes.fixed(i) && tied && !weightless) // settle_tied_points() tells whether it touches
+          nodes.free_gap(i) = math::larger(free_gap, std::numeric_limits<double>::min());
       });
   Kokkos::fence();
 }
@@ -400,6 +407,7 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
     c.friction.bound = device_values(points.friction_bound, "rpc::contact::friction_bound");
     c.friction.limit = device_values(points.friction_limit, "rpc::contact::friction_limit");
     start_friction(c, dirichlet, slip_start);
+    require_no_friction_on_tied(d, c, dirichlet, options);
     for (int side = 0; slip_start && side < c.num_sides(); ++side) add_motion(c, side, slip_start->motion[side]);
   }
   count_points(c, comm);

@@ -117,7 +117,14 @@ ActiveSet no_active_set(const ContactNodes &points)
   return active;
 }
 
-/// u <- from at free unknowns.
+/// The stiffness of all unknowns that are not prescribed, the tied ones too.
+RCP<const Operator> stiffness_of(const fem::ElasticProblem &elastic, const UpdatedOperator &hessian)
+{
+  if (elastic.stiffness_of_tied.is_null()) return hessian.shared_base();
+  return elastic.stiffness_of_tied;
+}
+
+/// u <- from at free unknowns, and its mean at tied ones.
 void take_free(const fem::DirichletDofs &dirichlet, const Vector &from, Vector &u)
 {
   const auto fixed = dirichlet.fixed;
@@ -128,6 +135,7 @@ void take_free(const fem::DirichletDofs &dirichlet, const Vector &from, Vector &
         if (!fixed(dof)) to(dof) = source(dof);
       });
   Kokkos::fence();
+  if (dirichlet.tied) set_members(*dirichlet.tied, means(*dirichlet.tied, from), u);
 }
 
 /// The rounding error of the sum a + b, exactly: D. Knuth's two-sum.
@@ -168,7 +176,8 @@ std::pair<double, double> replace(const ContactNodes &c, const DeviceView<double
 Iterate::Iterate(const fem::ElasticProblem &elastic, ContactNodes points, RCP<UpdatedOperator> hessian)
     : dirichlet_(elastic.dirichlet), points_(std::move(points)), hessian_(std::move(hessian)),
       own_(rpc::own_stiffness(hessian_->base(), points_)), coupled_(coupled_stiffness(hessian_->base(), points_)),
-      functional_(hessian_->shared_base(), elastic.load, elastic.energy_offset, smoothed_points(points_, own_)),
+      functional_(stiffness_of(elastic, *hessian_), elastic.load, elastic.energy_offset,
+                  smoothed_points(points_, own_)),
       active_(no_active_set(points_))
 {
   Vector applied(*elastic.applied_load, Teuchos::Copy), lifted(*elastic.load, Teuchos::Copy);

@@ -2,6 +2,7 @@
 #include "rpc/fem/dirichlet.hpp"
 
 #include "component_name.hpp"
+#include "of_time_alone.hpp"
 #include "prescribed_couplings.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/dofs.hpp"
@@ -10,6 +11,7 @@
 #include "rpc/core/parameters.hpp"
 #include "rpc/core/sparse_rows.hpp"
 #include "rpc/fem/surface.hpp"
+#include "tied.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,6 +27,7 @@ namespace
 struct Prescribed {
   double value = 0; // [m]
   int condition = -1;
+  bool moved = false; // by a force
 };
 
 /// Holds the nodes on the axis of an axisymmetric body, by no condition of the deck.                             (2.4a)
@@ -66,8 +69,10 @@ std::unordered_map<LO, Prescribed> prescribed_dofs(const Discretization &d,
     const auto nodes = mesh.nodes_of(condition.side, path + "->Side");
     const HostPoints points = node_positions(mesh, device_values(nodes, "rpc::fem::side_nodes"));
     for (int c = 0; c < dim; ++c) {
-      if (!condition.displacement[c]) continue;
-      const auto values = evaluate(*condition.displacement[c], points, path + "->" + component_name[c], mesh.comm());
+      if (!condition.holds(c)) continue;
+      const bool moved = condition.force[c].has_value();
+      const auto values = evaluate(moved ? ScalarField(0.) : *condition.displacement[c], points,
+                                   path + "->" + component_name[c], mesh.comm());
       double largest = 0;
       for (std::size_t n = 0; n < nodes.size(); ++n) largest = std::max(largest, std::abs(values(n)));
       scale[k][c] = max_all(mesh.comm(), largest);
@@ -76,7 +81,14 @@ std::unordered_map<LO, Prescribed> prescribed_dofs(const Discretization &d,
         const int other = dof.condition;
         const bool differs =
             other >= 0 && std::abs(dof.value - values(n)) > 1e-12 * std::max(scale[other][c], scale[k][c]);
-        if (differs && !conflict) {
+        if (other >= 0 && (moved || dof.moved) && !conflict) {
+          std::ostringstream message;
+          message << "deck: \"Dirichlet->" << conditions[other].name << "\" and \"" << path << "\" both hold "
+                  << component_name[c] << " of one node (" << points(n, 0) << ", " << points(n, 1)
+                  << (dim == 3 ? ", " + std::to_string(points(n, 2)) : "") << "), and \"Force " << component_name[c]
+                  << "\" is to move it. Leave " << component_name[c] << " out of one of them.";
+          conflict = message.str();
+        } else if (differs && !conflict) {
           std::ostringstream message;
           message << "deck: \"Dirichlet->" << conditions[other].name << "\" and \"" << path << "\" prescribe different "
                   << component_name[c] << " at one node (" << points(n, 0) << ", " << points(n, 1)
@@ -84,7 +96,7 @@ std::unordered_map<LO, Prescribed> prescribed_dofs(const Discretization &d,
                   << " [m]";
           conflict = message.str();
         }
-        dof = {values(n), static_cast<int>(k)};
+        dof = {values(n), static_cast<int>(k), moved};
       }
     }
   }
@@ -98,11 +110,12 @@ std::unordered_map<LO, Prescribed> prescribed_dofs(const Discretization &d,
   return prescribed;
 }
 
-/// load <- load - K u_D at free unknowns, diag(K) u_D at prescribed ones.
+/// load <- load - K u_D at free and tied unknowns, diag(K) u_D at prescribed ones.
 /// @param value  (overlap dofs) u_D
 /// @return this rank's part of u_D K u_D/2 + u_D diag(K) u_D/2, of which diag(K) is in the eliminated problem
-double add_prescribed_forces(const PrescribedCouplings &K, const DeviceView<char *> &fixed, const Vector &value,
-                             Vector &load)
+/// @param group  (owned dofs) of tied unknowns, or -1; empty: there are none
+double add_prescribed_forces(const PrescribedCouplings &K, const DeviceView<char *> &fixed,
+                             const DeviceView<int *> &group, const Vector &value, Vector &load)
 {
   const auto u = device_read(value);
   const auto b = device_write(load);
@@ -117,11 +130,22 @@ double add_prescribed_forces(const PrescribedCouplings &K, const DeviceView<char
           force += part;
           if (K.column(k) == row) own = part;
         }
-        b(row) = fixed(row) ? own : b(row) - force;
+        const bool is_tied = group.extent(0) > 0 && group(row) >= 0;
+        b(row) = fixed(row) && !is_tied ? own : b(row) - force;
         if (fixed(row)) sum += 0.5 * u(row) * (force + own);
       },
       energy);
   return energy;
+}
+
+void clear_fixed(const DeviceView<char *> &fixed, Vector &f)
+{
+  const auto to = device_write(f);
+  Kokkos::parallel_for(
+      "rpc::fem::clear_prescribed", device_range(static_cast<LO>(f.getLocalLength())), KOKKOS_LAMBDA(const LO dof) {
+        if (fixed(dof)) to(dof) = 0;
+      });
+  Kokkos::fence();
 }
 
 } // namespace
@@ -138,6 +162,14 @@ Teuchos::ParameterList valid_dirichlet_parameters()
     set_field(entry, name, "",
               std::string("Displacement in ") + name +
                   " [m], a number or an expression; absent: this component is free.");
+  for (const char *name : component_name)
+    set_field(entry, std::string("Force ") + name, "",
+              std::string("Force in ") + name +
+                  " on the whole side [N], in the plane per m, axisymmetric on the whole circumference: the side moves "
+                  "along " +
+                  name +
+                  " as one rigid piece, as far as the force moves it. A number or an expression of t. Instead of " +
+                  name + ".");
   Teuchos::ParameterList parent;
   set_named_entries(parent, "Dirichlet", entry,
                     "Prescribed displacements, any number of entries with names of your choice.");
@@ -148,6 +180,11 @@ std::vector<DirichletCondition> dirichlet_options(const Teuchos::ParameterList &
                                                   const FieldParser &parse)
 {
   std::vector<DirichletCondition> conditions;
+  const auto exists = [&](const std::string &parameter, const int c) {
+    RPC_REQUIRE(c < dim, "deck: \"" << parameter << "\" prescribes a component that a " << dim
+                                    << "D mesh does not have. It has X and Y; of a body of revolution Y runs along the "
+                                       "axis.");
+  };
   for (auto it = list.begin(); it != list.end(); ++it) {
     DirichletCondition condition;
     condition.name = list.name(it);
@@ -156,15 +193,24 @@ std::vector<DirichletCondition> dirichlet_options(const Teuchos::ParameterList &
     condition.side = entry.get<std::string>("Side").empty() ? condition.name : entry.get<std::string>("Side");
     bool any = false;
     for (int c = 0; c < 3; ++c) {
+      const std::string parameter = path + "->" + component_name[c], by_force = path + "->Force " + component_name[c];
       const std::string text = field_text(entry, component_name[c]);
-      if (text.empty()) continue;
-      RPC_REQUIRE(c < dim,
-                  "deck: \"" << path << "->" << component_name[c] << "\" prescribes a component that a " << dim
-                             << "D mesh does not have. It has X and Y; of a body of revolution Y runs along the axis.");
-      condition.displacement[c] = parse(text, path + "->" + component_name[c]);
-      any = true;
+      const std::string force = field_text(entry, std::string("Force ") + component_name[c]);
+      if (!text.empty()) {
+        exists(parameter, c);
+        condition.displacement[c] = parse(text, parameter);
+      }
+      if (!force.empty()) {
+        exists(by_force, c);
+        RPC_REQUIRE(text.empty(), "deck: \"" << path << "\" must have " << component_name[c] << " or Force "
+                                             << component_name[c] << ", got both. Leave one of them out.");
+        condition.force[c] = parse(force, by_force);
+        require_of_time_alone(*condition.force[c], by_force, "Give a number or an expression of t.");
+      }
+      any = any || condition.holds(c);
     }
-    RPC_REQUIRE(any, "deck: \"" << path << "\" prescribes nothing. Give X, Y or Z [m].");
+    RPC_REQUIRE(any,
+                "deck: \"" << path << "\" prescribes nothing. Give X, Y or Z [m], or Force X, Force Y or Force Z [N].");
     conditions.push_back(condition);
   }
   return conditions;
@@ -172,6 +218,7 @@ std::vector<DirichletCondition> dirichlet_options(const Teuchos::ParameterList &
 
 DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<DirichletCondition> &conditions)
 {
+  require_movable(d, conditions);
   const auto prescribed = prescribed_dofs(d, conditions);
   std::vector<LO> dofs;
   std::vector<double> values;
@@ -212,18 +259,15 @@ DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<Dirichle
       "rpc::fem::dirichlet_flags", device_range(d.num_overlap_dofs()),
       KOKKOS_LAMBDA(const LO i) { flag(i) = from(i) != 0; });
   Kokkos::fence();
+  dirichlet.tied = tied_unknowns(d, conditions, dirichlet.condition);
   return dirichlet;
 }
 
 void clear_prescribed(const DirichletDofs &dirichlet, Vector &f)
 {
-  const auto fixed = dirichlet.fixed;
-  const auto to = device_write(f);
-  Kokkos::parallel_for(
-      "rpc::fem::clear_prescribed", device_range(static_cast<LO>(f.getLocalLength())), KOKKOS_LAMBDA(const LO dof) {
-        if (fixed(dof)) to(dof) = 0;
-      });
-  Kokkos::fence();
+  const auto kept = dirichlet.tied ? means(*dirichlet.tied, f) : std::vector<double>();
+  clear_fixed(dirichlet.fixed, f);
+  if (dirichlet.tied) set_members(*dirichlet.tied, kept, f);
 }
 
 DeviceView<LO *> nodes_beside_prescribed(const Discretization &d, const DeviceView<char *> &fixed)
@@ -305,7 +349,9 @@ ElasticProblem elastic_problem(const Discretization &d, const PrescribedCoupling
   problem.load = rcp(new Vector(*applied_load, Teuchos::Copy));
   if (prescribed.normInf() > 0) {
     const double own_energy =
-        add_prescribed_forces(couplings, dirichlet.fixed, *on_overlap(d, prescribed), *problem.load);
+        add_prescribed_forces(couplings, dirichlet.fixed, dirichlet.tied ? dirichlet.tied->group : DeviceView<int *>(),
+                              *on_overlap(d, prescribed), *problem.load);
+    if (dirichlet.tied) set_members(*dirichlet.tied, means(*dirichlet.tied, *problem.load), *problem.load);
     problem.energy_offset = sum_all(d.mesh->comm(), own_energy) - applied_load->dot(prescribed);
   } else {
     clear_prescribed(dirichlet, *problem.load);

@@ -2,6 +2,7 @@
 #include "around_nodes.hpp"
 #include "component_name.hpp"
 #include "kernels.hpp"
+#include "of_time_alone.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/evaluate.hpp"
 #include "rpc/core/parameters.hpp"
@@ -59,18 +60,12 @@ bool is_given(const Teuchos::ParameterList &list, const std::string &prefix)
                      [&](const char *const c) { return !list.getEntry(prefix + c).isDefault(); });
 }
 
-/// Refuses a force that depends on the place, as far as some points tell.
-void require_of_time_alone(const VectorField &force, const std::string &path)
+/// Refuses forces that depend on the place.
+void require_all_of_time_alone(const VectorField &force, const std::string &path)
 {
   for (int c = 0; c < 3; ++c)
-    for (const double t : {0.37, 1., 2.3}) {
-      const ScalarField now = force[c].seen_at(t);
-      const double here = now({0, 0, 0}), there = now({0.7, 1.3, 2.1});
-      RPC_REQUIRE(here == there || (std::isnan(here) && std::isnan(there)),
-                  "deck: \"" << path << "->" << force_prefix << component_name[c]
-                             << "\" must not depend on x, y or z, for it is the force on the whole side, got "
-                             << force[c].text << ". Write a force per area as " << component_name[c] << ".");
-    }
+    require_of_time_alone(force[c], path + "->" + force_prefix + component_name[c],
+                          std::string("Write a force per area as ") + component_name[c] + ".");
 }
 
 bool is_zero(const VectorField &field, const int dim)
@@ -210,7 +205,7 @@ std::vector<TractionLoad> traction_options(const Teuchos::ParameterList &list, c
                               "entries with one \"Side\": they add up.");
     loads.push_back(
         {name, side, vector_field(entry, dim, path, parse), vector_field(entry, dim, path, parse, force_prefix)});
-    require_of_time_alone(loads.back().force, path);
+    require_all_of_time_alone(loads.back().force, path);
   }
   return loads;
 }

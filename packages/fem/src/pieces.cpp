@@ -120,6 +120,7 @@ Pieces pieces_of(const Discretization &d, const DirichletDofs &dirichlet)
   const auto cells = to_host(mesh.cells);
   const auto coords = to_host(mesh.coords);
   const auto fixed = to_host(dirichlet.fixed);
+  const auto group = to_host(dirichlet.tied ? dirichlet.tied->group : DeviceView<int *>());
   const auto row = to_host(d.node_to_cells.row);
   const auto around = to_host(d.node_to_cells.cell);
   const std::vector<int> piece = local_pieces(mesh, cells);
@@ -165,7 +166,8 @@ Pieces pieces_of(const Discretization &d, const DirichletDofs &dirichlet)
     }
     for (int c = 0; c < dim; ++c)
       for (const int p : here)
-        if (fixed(dim * n + c)) rows[p].push_back(row_at(x, c, frames[p], dim));
+        if (fixed(dim * n + c) && !(group.extent(0) > 0 && group(dim * n + c) >= 0))
+          rows[p].push_back(row_at(x, c, frames[p], dim));
   }
   for (int p = 0; p < count; ++p)
     for (const RigidMotion &held : independent_rows(rows[p], rigid_tolerance)) {

@@ -2,6 +2,8 @@
 #include "rpc/fem/rigid_motion.hpp"
 
 #include "point_text.hpp"
+#include "rpc/core/device_values.hpp"
+#include "rpc/core/error.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/fem/surface.hpp"
 
@@ -105,13 +107,57 @@ DeviceView<int **> what_is_held(const DirichletDofs &dirichlet, const Parts &par
 {
   const DeviceView<int **> held("rpc::fem::what_is_held", nodes.extent(0), dim + 1);
   const auto fixed = dirichlet.fixed;
+  const auto group = dirichlet.tied ? dirichlet.tied->group : DeviceView<int *>();
   const auto of_node = parts.of_node;
   Kokkos::parallel_for(
       "rpc::fem::what_is_held", device_range(static_cast<LO>(nodes.extent(0))), KOKKOS_LAMBDA(const LO i) {
-        for (int c = 0; c < dim; ++c) held(i, c) = fixed(dof(dim, nodes(i), c)) ? 1 : 0;
+        for (int c = 0; c < dim; ++c) {
+          const LO unknown = dof(dim, nodes(i), c);
+          held(i, c) = fixed(unknown) && !(group.extent(0) > 0 && group(unknown) >= 0) ? 1 : 0;
+        }
         held(i, dim) = of_node(nodes(i));
       });
   return held;
+}
+
+/// What tied unknowns stop: motions that move two nodes of a group by different amounts. @throws rpc::Error (bad_input) where a group is of several
+/// parts, which it joins; collective
+void add_rows_of_tied(const Discretization &d, const Parts &parts, const DirichletDofs &dirichlet,
+                      std::vector<std::vector<RigidMotion>> &rows)
+{
+  const int dim = d.dim();
+  const Comm &comm = d.mesh->comm();
+  const TiedUnknowns &tied = *dirichlet.tied;
+  const auto of_node = to_host(parts.of_node);
+  for (int j = 0; j < tied.size(); ++j) {
+    const auto members = to_host(tied.members[j]);
+    std::vector<LO> nodes;
+    int first = parts.size(), last = -1, component = 0;
+    for (std::size_t i = 0; i < members.extent(0); ++i) {
+      nodes.push_back(node_of(dim, members(i)));
+      component = component_of(dim, members(i));
+      first = std::min(first, of_node(nodes.back()));
+      last = std::max(last, of_node(nodes.back()));
+    }
+    RPC_REQUIRE(min_all(comm, first) == max_all(comm, last),
+                "deck: a force of \"Dirichlet\" moves a side of several parts of the body as one. Name a side of each "
+                "part, with a force for each.");
+    const HostPoints x = node_positions(*d.mesh, device_values(nodes, "rpc::fem::tied_nodes"));
+    std::vector<double> middle(dim, 0.);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      for (int c = 0; c < dim; ++c) middle[c] += x(i, c) / static_cast<double>(tied.count[j]);
+    middle = summed(comm, middle);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const Part &part = parts.part[last];
+      double arm[3] = {0, 0, 0}, unit[3] = {0, 0, 0};
+      for (int c = 0; c < dim; ++c) arm[c] = (x(i, c) - middle[c]) / part.radius;
+      unit[component] = 1;
+      RigidMotion row{};
+      along_modes(dim, arm, unit, row.data());
+      std::fill(row.begin(), row.begin() + dim, 0.); // translations move all by the same amount
+      rows[last].push_back(row);
+    }
+  }
 }
 
 } // namespace
@@ -202,6 +248,7 @@ std::vector<std::vector<RigidMotion>> free_motions(const Discretization &d, cons
       rows[p].push_back(row);
     }
   }
+  if (dirichlet.tied) add_rows_of_tied(d, parts, dirichlet, rows);
   rows = independent_rows_of_all(mesh.comm(), rows, rigid_tolerance);
   std::vector<std::vector<RigidMotion>> motions;
   for (const auto &stopped : rows)

@@ -67,6 +67,19 @@ TEST(FreeMotions, OfARolledBodySlideAlongTheRollers)
   EXPECT_NE(words[2].find(") along (0, -1, 0)"), std::string::npos) << words[2];
 }
 
+TEST(FreeMotions, OfASideThatAForceMovesKeepItInOnePiece)
+{
+  const auto pressed = [](const std::vector<int> &held, const int along) {
+    auto condition = hold("top", held);
+    condition.force[along] = ScalarField(1.);
+    return condition;
+  };
+  EXPECT_EQ(free_of(plane, {pressed({0}, 1)}), Words{"translation along (0, 1)"});
+  EXPECT_EQ(free_of(plane, {pressed({}, 1)}), (Words{"translation along (1, 0)", "translation along (0, 1)"}));
+  EXPECT_EQ(free_of(space, {pressed({0, 2}, 1)}), Words{"translation along (0, 1, 0)"});
+  EXPECT_EQ(free_of(space, {pressed({}, 1)}).size(), 4u); // it also turns about y
+}
+
 /// The plane body with Dirichlet flags at the nodes of the left side that satisfy `at`.
 std::vector<std::vector<RigidMotion>> free_at_nodes(const std::function<bool(const Point &)> &at, fem::Parts *found)
 {

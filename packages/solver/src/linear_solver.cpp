@@ -405,7 +405,7 @@ const Body &LinearSolver::body() const
   return impl_->body;
 }
 
-LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const Accuracy &asked)
+LinearSolver::Result LinearSolver::solve_held(const Vector &b, Vector &x, const Accuracy &asked)
 {
   Accuracy wanted = asked;
   if (wanted.error > 0) {
@@ -431,7 +431,7 @@ LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const Accur
   }
 }
 
-double LinearSolver::inverse_energy(const Vector &F)
+double LinearSolver::inverse_energy_held(const Vector &F)
 {
   if (!(F.norm2() > 0)) return 0;
   try {

@@ -22,8 +22,10 @@ namespace
 std::vector<fem::DirichletCondition> held_sides(std::vector<fem::DirichletCondition> conditions)
 {
   for (auto &condition : conditions)
-    for (auto &component : condition.displacement)
-      if (component) component = ScalarField(0.);
+    for (int c = 0; c < 3; ++c) {
+      if (condition.holds(c)) condition.displacement[c] = ScalarField(0.);
+      condition.force[c].reset();
+    }
   return conditions;
 }
 

@@ -55,6 +55,9 @@ std::vector<std::string> varying_loads(const Model &model)
     add(load.traction, "Traction->" + load.name);
     add(load.force, "Traction->" + load.name);
   }
+  for (const auto &condition : model.dirichlet)
+    for (const auto &force : condition.force)
+      if (force && !force->is_constant()) names.push_back("\"Dirichlet->" + condition.name + '"');
   return names;
 }
 
@@ -113,8 +116,10 @@ Model Model::seen_at(const double t) const
 {
   Model model = *this;
   for (auto &condition : model.dirichlet)
-    for (auto &component : condition.displacement)
-      if (component) component = component->seen_at(t);
+    for (int c = 0; c < 3; ++c) {
+      if (condition.displacement[c]) condition.displacement[c] = condition.displacement[c]->seen_at(t);
+      if (condition.force[c]) condition.force[c] = condition.force[c]->seen_at(t);
+    }
   for (auto &load : model.tractions) {
     load.traction = analysis::seen_at(load.traction, t);
     load.force = analysis::seen_at(load.force, t);
@@ -148,6 +153,7 @@ Problem::Problem(std::shared_ptr<const NestedMesh> mesh, const Model &model, con
   const Stiffness K = stiffness_of(*mesh_, model_.materials, prescribed_);
   stiffness_ = K.rows;
   couplings_ = K.couplings;
+  stiffness_of_tied_ = fem::tied_stiffness(d, couplings_, dirichlet, stiffness_);
   candidates_ = nodes_of(d, contact_sides());
 }
 
@@ -176,7 +182,10 @@ Step Problem::step(const double t, const MultiVector *const dents, const Memory 
       {},
       contact::contact_nodes(d, now.contact, dirichlet, now.materials, dents, slip_start ? &*slip_start : nullptr),
       {}};
-  step.elastic = fem::elastic_problem(d, couplings_, loads_of(d, now), std::move(dirichlet));
+  const auto load = loads_of(d, now);
+  fem::add_moving_forces(dirichlet, now.dirichlet, *load);
+  step.elastic = fem::elastic_problem(d, couplings_, load, std::move(dirichlet));
+  step.elastic.stiffness_of_tied = stiffness_of_tied_;
   require_finite(*step.elastic.load, "the forces of prescribed displacements",
                  [&d] { return fem::node_coordinates(d); });
   step.support = support_of(d, free_parts_, step, now);

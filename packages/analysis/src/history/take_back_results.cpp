@@ -26,6 +26,7 @@ void take_back_results(Solution &s)
   take_back(s.contact.total);
   for (auto &side : s.contact.sides) take_back(side);
   for (auto &force : s.reactions) force.fill(no_result);
+  for (auto &displacement : s.displacements) displacement.fill(no_result);
   s.contact.between = {};
 }
 

@@ -115,7 +115,7 @@ PredictedBy told_by(const StepSolution &solution, const std::shared_ptr<const Pr
   PredictedBy by;
   if (level == 1 && solution.step.contact.num_total >= step_rules.fewest_points_telling)
     by.found_by = solution.found_by;
-  if (scene)
+  if (scene && scene->stiffness_of_tied().is_null()) // its model knows no tied unknowns
     by.coarse_choice = [scene, time = solution.step.time, &fine](const contact::Iterate &iterate,
                                                                  const double solve_seconds) {
       return CoarseChoice::make(*scene, scene->dirichlet(time), fine.discretization(), iterate, solve_seconds);

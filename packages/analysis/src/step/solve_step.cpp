@@ -3,6 +3,7 @@
 /// functions that it calls follow.
 #include "rpc/analysis/solve_step.hpp"
 
+#include "mean_displacements.hpp"
 #include "rpc/analysis/active_set.hpp"
 #include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/analysis/rules.hpp"
@@ -10,6 +11,7 @@
 #include "rpc/contact/between_nodes.hpp"
 #include "rpc/contact/clearance.hpp"
 #include "rpc/contact/energies.hpp"
+#include "rpc/contact/tied_points.hpp"
 #include "rpc/core/causes.hpp"
 #include "rpc/core/interrupt.hpp"
 #include "rpc/core/timed.hpp"
@@ -330,11 +332,29 @@ std::vector<std::array<double, 3>> reactions(const Problem &problem, const StepS
   const fem::Discretization &d = problem.discretization();
   Vector out_of_balance(*s.uzawa.residuals.forces, Teuchos::Copy);
   out_of_balance.update(-1., *elastic.applied_load, -1., contact::contact_forces(d, s.step.contact, s.contact), 1.);
-  return fem::reaction_forces(d, elastic.dirichlet, static_cast<int>(problem.model().dirichlet.size()), out_of_balance);
+  const Model now = problem.model().seen_at(s.step.time);
+  auto forces = fem::reaction_forces(d, elastic.dirichlet, static_cast<int>(now.dirichlet.size()), out_of_balance);
+  for (const auto &[k, c] : fem::moved_by_force(now.dirichlet)) forces[k][c] += (*now.dirichlet[k].force[c])({});
+  return forces;
+}
+
+/// How far forces have moved sides, and the sides' other means. @throws rpc::Error (bad_input) where a node that moves so touches; collective
+void read_tied(const Problem &problem, StepSolution &s)
+{
+  const fem::DirichletDofs &dirichlet = s.step.elastic.dirichlet;
+  if (!dirichlet.tied) return;
+  const auto &conditions = problem.model().dirichlet;
+  if (s.uzawa.converged)
+    contact::settle_tied_points(problem.discretization(), s.step.contact, dirichlet, problem.model().contact, *s.u);
+  s.displacements = MeanDisplacements(problem)(*s.u);
+  const auto moved = means(*dirichlet.tied, *s.u);
+  const auto groups = fem::moved_by_force(conditions);
+  for (std::size_t j = 0; j < groups.size(); ++j) s.displacements[groups[j].condition][groups[j].component] = moved[j];
 }
 
 void read_results(const Problem &problem, StepSolution &s)
 {
+  read_tied(problem, s);
   s.contact = contact::contact_result(problem.discretization(), problem.contact_sides(), s.step.contact, s.state,
                                       contact::has_friction(problem.model().contact));
   contact::look_between_nodes(problem.discretization(), problem.contact_sides(),

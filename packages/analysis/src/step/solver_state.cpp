@@ -73,6 +73,7 @@ SolverState::SolverState(const Problem &problem, const solver::LinearSolverOptio
   const auto for_this = tuned(options, problem, static_cast<bool>(mixed));
   linear_ = std::make_unique<solver::LinearSolver>(for_this, hessian_, body_of(problem.discretization()),
                                                    problem.mesh_levels(), std::move(mixed));
+  if (!problem.stiffness_of_tied().is_null()) linear_->move_as_one(problem.stiffness_of_tied(), hessian_);
 }
 
 } // namespace rpc::analysis

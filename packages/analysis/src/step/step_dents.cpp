@@ -70,10 +70,11 @@ Vector moved_along(const Problem &problem, const double t, const Vector &u)
   std::vector<double> sums(6, 0.); // of the changes and their numbers, by component
   {
     const auto condition = to_host(dirichlet.condition);
+    const auto group = to_host(dirichlet.tied ? dirichlet.tied->group : DeviceView<int *>());
     const auto from = u.getLocalViewHost(Tpetra::Access::ReadOnly);
     const auto to = dirichlet.value->getLocalViewHost(Tpetra::Access::ReadOnly);
     for (std::size_t i = 0; i < condition.extent(0); ++i) {
-      if (condition(i) < 0) continue;
+      if (condition(i) < 0 || (group.extent(0) > 0 && group(i) >= 0)) continue;
       const int c = component_of(dim, static_cast<LO>(i));
       sums[c] += to(i, 0) - from(i, 0);
       ++sums[3 + c];

@@ -79,6 +79,8 @@ public:
   std::vector<const mesh::Side *> contact_sides() const;
   /// K, prescribed unknowns eliminated. Assembled only where somebody asks for its matrix, if its rows repeat.
   const RCP<const StiffnessOperator> &stiffness() const { return stiffness_; }
+  /// The same with the sides that forces move as one; null where there are none.
+  const RCP<const TiedStiffness> &stiffness_of_tied() const { return stiffness_of_tied_; }
   /// Owned nodes at which contact may act at some time, ascending: those of the contact sides.
   const DeviceView<LO *> &contact_candidates() const { return candidates_; }
   /// Makes the meshes that multigrid needs; null where there is no coarser one.
@@ -93,6 +95,7 @@ private:
   contact::FreeParts free_parts_;
   fem::PrescribedCouplings couplings_;
   RCP<const StiffnessOperator> stiffness_;
+  RCP<const TiedStiffness> stiffness_of_tied_;
   DeviceView<LO *> candidates_;
 };
 

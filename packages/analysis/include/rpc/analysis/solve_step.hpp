@@ -90,6 +90,8 @@ struct StepSolution {
   double energy = 0;                            ///< J(u) [J], in 2D per m
   double energy_norm_squared = 0;               ///< a(u, u) [J], in 2D per m
   std::vector<std::array<double, 3>> reactions; ///< of each Dirichlet condition on the body [N], in 2D per m
+  /// Of the side of each Dirichlet condition, its mean [m]; empty where no force moves a side.
+  std::vector<std::array<double, 3>> displacements;
 
   solver::LinearSolverCounts linear; ///< of this step
   FoundBy found_by = FoundBy::choices;

@@ -2,12 +2,14 @@
 #pragma once
 
 #include "rpc/algebra/repeated_rows.hpp"
+#include "rpc/algebra/tied_stiffness.hpp"
 #include "rpc/core/field.hpp"
 #include "rpc/fem/discretization.hpp"
 #include "rpc/fem/elasticity.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,12 +17,27 @@
 namespace rpc::fem
 {
 
-/// Prescribed displacement on one side or at points, paper (2) with values other than 0 too; an absent component is free.
+/// Prescribed displacement on one side or at points, paper (2) with values other than 0 too; a component of neither a displacement nor a
+/// force is free.
 struct DirichletCondition {
   std::string name;                                       ///< of the entry in the deck, for messages
   std::string side;                                       ///< or a name of mesh::Mesh::points
   std::array<std::optional<ScalarField>, 3> displacement; ///< [m]
+  /// On the whole side, which moves along that component as one [N]; of time alone.
+  std::array<std::optional<ScalarField>, 3> force{};
+
+  /// Whether the side's nodes are not free along a component.
+  bool holds(const int component) const { return displacement[component] || force[component]; }
+  /// Whether a force moves the side.
+  bool is_moved() const { return force[0] || force[1] || force[2]; }
 };
+
+/// A component of a side that a force moves: a group of tied unknowns.
+struct MovedByForce {
+  int condition, component;
+};
+/// In the order of the groups.
+std::vector<MovedByForce> moved_by_force(const std::vector<DirichletCondition> &conditions);
 
 /// Parameters of the deck's `Dirichlet` sublist.
 Teuchos::ParameterList valid_dirichlet_parameters();
@@ -28,7 +45,7 @@ Teuchos::ParameterList valid_dirichlet_parameters();
 std::vector<DirichletCondition> dirichlet_options(const Teuchos::ParameterList &list, int dim,
                                                   const FieldParser &parse);
 
-/// Which unknowns are prescribed, and their values.
+/// Which unknowns are prescribed, and their values. Those that a force moves as one are among them, with the value 0.
 struct DirichletDofs {
   DeviceView<char *> fixed; ///< (overlap dofs) 1 where prescribed
   DeviceView<int *>
@@ -36,14 +53,18 @@ struct DirichletDofs {
                      ///< held by the axis of an axisymmetric body
   RCP<Vector> value; ///< (owned dofs) [m], 0 where free
   GO num_fixed = 0;  ///< over all ranks
+  std::shared_ptr<const TiedUnknowns>
+      tied; ///< those that a force moves, a group for each component of a side; null: none
 };
 
 /// u_r = 0 on the axis of an axisymmetric body is prescribed without a condition. Collective.
 /// @throws rpc::Error (bad_input) if a side does not exist, a value is NaN or infinite, two conditions prescribe different
-///         values at one node, or one another radial displacement on the axis
+///         values at one node, one another radial displacement on the axis, or a force moves what is no side, what another
+///         condition holds, or along the radius
 DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<DirichletCondition> &conditions);
 
-/// f, (owned dofs), becomes 0 where displacements are prescribed; fences.
+/// A force f, (owned dofs), becomes what moves the body: 0 where displacements are prescribed, at tied unknowns the mean over their
+/// group. Collective; fences.                                                                        (2.9a)
 void clear_prescribed(const DirichletDofs &dirichlet, Vector &f);
 
 /// The entries of a stiffness matrix in the columns of prescribed unknowns, (K_FD; K_DD), row after row: what a step with other
@@ -82,6 +103,7 @@ struct ElasticProblem {
   RCP<Vector> load;         ///< with the forces of prescribed displacements [N]
   RCP<Vector> applied_load; ///< [N]
   DirichletDofs dirichlet;
+  RCP<const TiedStiffness> stiffness_of_tied; ///< null: there are no tied unknowns
   double energy_offset =
       0; ///< Pi(u) = u.(K u)/2 - load.u + energy_offset, Pi being that of the problem before elimination [J]
 };
@@ -91,6 +113,15 @@ struct ElasticProblem {
 /// @param dirichlet     of the unknowns that were eliminated
 ElasticProblem elastic_problem(const Discretization &d, const PrescribedCouplings &couplings, RCP<Vector> applied_load,
                                DirichletDofs dirichlet);
+
+/// load += the forces that move sides as one, in equal parts on their nodes. Collective.
+/// @throws rpc::Error (bad_input) if one is not finite
+void add_moving_forces(const DirichletDofs &dirichlet, const std::vector<DirichletCondition> &conditions, Vector &load);
+
+/// The stiffness with tied unknowns; null where there are none. Collective.                                       (2.9a)
+/// @param K  the same, all prescribed unknowns eliminated
+RCP<const TiedStiffness> tied_stiffness(const Discretization &d, const PrescribedCouplings &couplings,
+                                        const DirichletDofs &dirichlet, RCP<const StiffnessOperator> K);
 
 /// Force with which each condition holds the body: the sum of internal - external forces over the unknowns that it
 /// prescribes [N], in the plane per m; the radial component of an axisymmetric body cancels to 0. Collective. (2.11)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "rpc/algebra/tied_stiffness.hpp"
 #include "rpc/algebra/updated_operator.hpp"
 #include "rpc/solver/accuracy.hpp"
 #include "rpc/solver/linear_solver_options.hpp"
@@ -21,6 +22,8 @@ struct CandidateCounts {
   int setups = 0, solves = 0, iterations = 0;
   std::string left; ///< why another one took its place, or why it cannot be had; empty: neither
 };
+
+class TiedSolver;
 
 /// What was done, for the summary.
 struct LinearSolverCounts {
@@ -59,6 +62,8 @@ public:
   LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperator> &H, Body body, MakeMeshLevels levels = {},
                MakeMixedForm mixed = {});
   ~LinearSolver();
+  /// From here on b and x have groups of tied unknowns, beside H, which takes them as prescribed.                    (4.11)
+  void move_as_one(const RCP<const TiedStiffness> &stiffness, const RCP<const UpdatedOperator> &H);
 
   struct Result {
     bool converged = false;
@@ -83,8 +88,12 @@ public:
   const Body &body() const;
 
 private:
+  Result solve_held(const Vector &b, Vector &x, const Accuracy &wanted);
+  double inverse_energy_held(const Vector &F);
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
+  std::shared_ptr<TiedSolver> tied_; // null: there are no tied unknowns
 };
 
 } // namespace rpc::solver

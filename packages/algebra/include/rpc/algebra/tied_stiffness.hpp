@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "rpc/algebra/stiffness_operator.hpp"
+
+#include <vector>
+
+namespace rpc
+{
+
+/// Unknowns that move as one: each group, such as one component of the displacement of a side that a force moves, has one value.
+///
+/// Vectors have the value at each member of a group; forces have at each member the mean of the forces on all. So products of the two
+/// are those of the values and the sums of forces.                                                    doc/theory.md (2.9a)
+struct TiedUnknowns {
+  std::vector<DeviceView<LO *>> members; ///< (groups) this rank's owned unknowns
+  std::vector<GO> count;                 ///< (groups) over all ranks
+  DeviceView<int *> group;               ///< (owned unknowns) or -1
+
+  int size() const { return static_cast<int>(members.size()); }
+};
+
+/// (groups) The mean of f over each group, the same on all ranks; collective.
+std::vector<double> means(const TiedUnknowns &tied, const Vector &f);
+/// f <- value at all members of each group. @param value  (groups)
+void set_members(const TiedUnknowns &tied, const std::vector<double> &value, Vector &f);
+
+/// The stiffness of a body with groups of tied unknowns z, whose members K takes as prescribed.                    (2.9a)
+///
+///     A (u, z) = (K u + C z, C^T u + D z),    C = K_FZ, D = K_ZZ of the whole stiffness, rows and columns of a group summed
+///
+/// All members are collective.
+class TiedStiffness : public Operator
+{
+public:
+  /// @param K  the members' unknowns eliminated
+  /// @param force  (groups) forces [N/m] on all owned unknowns where a group moves by 1 and nothing else does, at prescribed ones that are
+  ///               no members 0; becomes C
+  TiedStiffness(RCP<const StiffnessOperator> K, TiedUnknowns tied, std::vector<RCP<Vector>> force);
+
+  /// y <- alpha A x + beta y, of one vector with one value at all members of a group.
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
+             double beta = 0) const override;
+  RCP<const Map> getDomainMap() const override { return K_->getDomainMap(); }
+  RCP<const Map> getRangeMap() const override { return K_->getRangeMap(); }
+  bool hasTransposeApply() const override { return false; }
+
+  const TiedUnknowns &tied() const { return tied_; }
+  /// A group's column of C, 0 at members.
+  const Vector &force(const int group) const { return *force_[group]; }
+  /// D of two groups [N/m].
+  double stiffness(const int a, const int b) const { return stiffness_[a * tied_.size() + b]; }
+  /// (groups) C^T x; collective.
+  std::vector<double> forces_of(const Vector &x) const;
+
+private:
+  RCP<const StiffnessOperator> K_;
+  TiedUnknowns tied_;
+  std::vector<RCP<Vector>> force_;
+  std::vector<double> stiffness_;
+};
+
+} // namespace rpc

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rpc/algebra/tied_stiffness.hpp"
+
+#include "rpc/core/error.hpp"
+#include "rpc/core/parallel.hpp"
+
+#include <utility>
+
+namespace rpc
+{
+namespace
+{
+
+/// This rank's sum of f over the members of a group.
+double sum_over(const DeviceView<LO *> &members, const Vector &f)
+{
+  const auto from = device_read(f);
+  double sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::algebra::sum_over_group", device_range(static_cast<LO>(members.extent(0))),
+      KOKKOS_LAMBDA(const LO i, double &part) { part += from(members(i)); }, sum);
+  return sum;
+}
+
+/// (groups) Sums over all ranks; collective.
+std::vector<double> sums(const TiedUnknowns &tied, const Vector &f)
+{
+  std::vector<double> mine;
+  for (const auto &members : tied.members) mine.push_back(sum_over(members, f));
+  return summed(*f.getMap()->getComm(), mine);
+}
+
+} // namespace
+
+std::vector<double> means(const TiedUnknowns &tied, const Vector &f)
+{
+  std::vector<double> mean = sums(tied, f);
+  for (int j = 0; j < tied.size(); ++j) mean[j] /= static_cast<double>(tied.count[j]);
+  return mean;
+}
+
+void set_members(const TiedUnknowns &tied, const std::vector<double> &value, Vector &f)
+{
+  const auto to = device_write(f);
+  for (int j = 0; j < tied.size(); ++j) {
+    const auto members = tied.members[j];
+    const double here = value[j];
+    Kokkos::parallel_for(
+        "rpc::algebra::set_group", device_range(static_cast<LO>(members.extent(0))),
+        KOKKOS_LAMBDA(const LO i) { to(members(i)) = here; });
+  }
+  Kokkos::fence();
+}
+
+TiedStiffness::TiedStiffness(RCP<const StiffnessOperator> K, TiedUnknowns tied, std::vector<RCP<Vector>> force)
+    : K_(std::move(K)), tied_(std::move(tied)), force_(std::move(force)),
+      stiffness_(static_cast<std::size_t>(tied_.size()) * tied_.size())
+{
+  const std::vector<double> none(tied_.size(), 0.);
+  for (int k = 0; k < tied_.size(); ++k) {
+    const auto of_members = sums(tied_, *force_[k]);
+    for (int j = 0; j < tied_.size(); ++j) stiffness_[j * tied_.size() + k] = of_members[j];
+    set_members(tied_, none, *force_[k]);
+  }
+}
+
+std::vector<double> TiedStiffness::forces_of(const Vector &x) const
+{
+  std::vector<double> all;
+  for (const auto &force : force_) all.push_back(force->dot(x));
+  return all;
+}
+
+void TiedStiffness::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, const double alpha,
+                          const double beta) const
+{
+  RPC_REQUIRE(x.getNumVectors() == 1, "TiedStiffness: products with one vector at a time");
+  const auto column = x.getVector(0);
+  const Vector &u = *column;
+  Vector product(u.getMap());
+  K_->apply(u, product);
+  const std::vector<double> value = means(tied_, u);
+  std::vector<double> force = forces_of(u);
+  for (int j = 0; j < tied_.size(); ++j) {
+    product.update(value[j], *force_[j], 1.);
+    for (int k = 0; k < tied_.size(); ++k) force[j] += stiffness(j, k) * value[k];
+    force[j] /= static_cast<double>(tied_.count[j]);
+  }
+  set_members(tied_, force, product);
+  y.update(alpha, product, beta);
+}
+
+} // namespace rpc

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Random bodies that a force presses, against the same bodies that a displacement presses.
+
+    python3 forces.py --rpc=build/rpc [--seed=1] [--scenes=50] [--only=K] [--jobs=2] [--keep=DIR]
+
+Scene K comes from the seed and K alone: a box in the plane, of revolution or in space, whose top is held rigid, on an obstacle or a foundation with a
+gap, rigid or yielding, hardening or on springs, some with friction, some in load steps. The top is first moved by a displacement; then the force
+that this took, of each step, moves it. Told are failures: the displacement that comes back differs by more than 1e-10 of the given one, or a run
+does not end as it should; where the foundation carries no more than the given force, a hundredth more must end with exit code 5. Told are the Newton
+steps of the two ways. The exit code is 1 if a scene failed, or the median of the ratio of Newton steps is above 1.2.
+"""
+import argparse
+import concurrent.futures
+import csv
+import json
+import os
+import pathlib
+import random
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+
+from friction_coefficients import written
+from generate import log_uniform
+
+SAME, MOST_RATIO = 1e-10, 1.2
+NO_SOLUTION = 5
+TIGHT = 1e-11  # residuals: the two ways are to agree to more digits than a run has by default
+KINDS = ["plane strain", "plane stress", "axisymmetric", "space", "space"]
+
+
+def foundation(rng, modulus, height, depth):
+    """The law of the foundation, without geometry."""
+    law = {}
+    kind = rng.choice(["rigid", "yields", "yields", "hardens", "springs", "springs that yield"])
+    pressure = modulus * depth / height
+    if kind in ("yields", "hardens", "springs that yield"):
+        law["Yield Stress"] = pressure * rng.uniform(0.3, 1.5)
+    if kind == "hardens":
+        law["Hardening"] = modulus / height * log_uniform(rng, -1.3, 0.3)
+    if kind.startswith("springs"):
+        law["Stiffness"] = modulus / height * log_uniform(rng, -1, 1)
+    if rng.random() < 0.3:
+        law["Friction Coefficient"] = rng.uniform(0.05, 0.6)
+    return law
+
+
+def scene(seed, number):
+    """(deck whose top is moved by a displacement, times of its load steps, axis along which it moves)"""
+    rng = random.Random(f"forces {seed} {number}")
+    kind = rng.choice(KINDS)
+    dim = 3 if kind == "space" else 2
+    height, width = 1.0, rng.uniform(0.6, 3)
+    upper = [width, height] + [rng.uniform(0.6, 2)] * (dim - 2)
+    per_height = rng.randint(4, 8) if dim == 3 else rng.randint(8, 24)
+    cells = [max(3, min(40, round(per_height * extent))) for extent in upper]
+    modulus, depth = log_uniform(rng, 2, 11), height * log_uniform(rng, -3, -1.3)
+    deck = {
+        "Mesh": {"Lower": [0.0] * dim, "Upper": upper, "Cells": cells, "Element": rng.choice(["Q1", "Q2", "P1", "P2"])},
+        "Material": {"Young's Modulus": modulus, "Poisson's Ratio": rng.choice([0.0, 0.2, 0.3, 0.45])},
+        "Contact": {"Side": "bottom", **foundation(rng, modulus, height, depth)},
+        "Uzawa": {"Tolerance": TIGHT},
+        "Output": {"Exodus": False, "CSV": False},
+    }
+    if dim == 2:
+        deck["Kinematics"] = kind
+    if rng.random() < 0.5:  # a ball, or a roller
+        radius, middle = width * log_uniform(rng, -0.15, 0.7), 0.0 if kind == "axisymmetric" else width * rng.uniform(0.3, 0.7)
+        centre = [middle, -radius - rng.choice([0.0, 0.0, 0.2 * depth])] + [0.5 * upper[-1]] * (dim - 2)
+        deck["Contact"]["Obstacle"] = {"Type": "sphere", "Centre": centre, "Radius": radius}
+    else:
+        deck["Contact"]["Gap"] = f"{depth * rng.uniform(0.1, 1)!r}*(1 - cos({rng.uniform(1, 7)!r}*x))/2"
+    held = {"X": 0.0} if rng.random() < 0.7 or "Friction Coefficient" not in deck["Contact"] else {}
+    held = {} if kind == "axisymmetric" and rng.random() < 0.5 else held
+    if dim == 3:
+        held = {"X": 0.0, "Z": 0.0}
+    times = []
+    path = f"{-depth!r}"
+    if rng.random() < 0.35:
+        times = [0.5, 1.0, 1.5, 2.0]
+        path = f"{-depth!r}*(t < 1 ? t : t < 1.5 ? 1 - 0.3*(t - 1) : 0.85 + 0.6*(t - 1.5))"
+        deck["Steps"] = {"Times": times}
+    deck["Dirichlet"] = {"top": {**held, "Y": path}}
+    if kind != "axisymmetric" and "X" not in held:
+        deck["Dirichlet"]["corner"] = {"Side": "left top", "X": 0.0}
+    return deck, times
+
+
+def run(rpc, deck, folder, name):
+    """(exit code, summary or None, rows of the history, last words)"""
+    path = pathlib.Path(folder) / f"{name}.yaml"
+    path.write_text(f"{name}:\n" + written(deck))
+    result = subprocess.run([rpc, f"--input={path}", f"--output={folder}"], capture_output=True, text=True, errors="replace", check=False,
+                            stdin=subprocess.DEVNULL, timeout=600)
+    summary, history = path.with_suffix(".json"), pathlib.Path(folder) / f"{name}.history.csv"
+    rows = list(csv.DictReader(history.open())) if history.exists() else []
+    return result.returncode, json.loads(summary.read_text()) if summary.exists() else None, rows, result.stderr.strip()[-300:]
+
+
+def column(rows, begins):
+    """The numbers of the first column of a name that begins so."""
+    name = next(key for key in rows[0] if key.startswith(begins))
+    return [float(row[name]) for row in rows]
+
+
+def steps_of(summary):
+    return sum(step["newton_iterations"] for step in summary["steps"]) if summary.get("steps") else sum(summary["newton_iterations"])
+
+
+def by_force(deck, forces, times):
+    """The same deck, moved by forces at times, linear between them."""
+    deck = json.loads(json.dumps(deck))
+    top = deck["Dirichlet"]["top"]
+    del top["Y"]
+    text = repr(forces[-1])
+    for time, force in reversed(list(zip(times[:-1], forces[:-1]))):
+        text = f"t < {time + 0.01!r} ? {force!r} : ({text})"
+    top["Force Y"] = text
+    return deck
+
+
+def judge(rpc, seed, number, keep):
+    """(complaint or None, what happened, ratio of Newton steps or None)"""
+    deck, times = scene(seed, number)
+    folder = tempfile.mkdtemp(prefix="rpc_forces_")
+    try:
+        code, given, rows, words = run(rpc, deck, folder, "moved")
+        if code != 0:
+            return None, f"not compared: a displacement ends with {code}: {words}", None
+        forces = column(rows, "top_reaction_y") if times else [given["reaction_force"]["top"][1]]
+        wanted = column(rows, "top_displacement_y") if times else [float(deck["Dirichlet"]["top"]["Y"])]
+        pressed = by_force(deck, forces, times or [1.0])
+        code, found, rows, words = run(rpc, pressed, folder, "pressed")
+        if code == NO_SOLUTION and "Yield Stress" in deck["Contact"]:
+            if any(word in words for word in ("all that the foundation carries", "carries at most")):
+                return None, "all of the foundation yields, refused", None
+        if code != 0:
+            return f"exit {code}: {words or (found or {}).get('reason')}", "", None
+        back = column(rows, "top_displacement_y") if times else [found["force_displacement"]["top"][1]]
+        off = max(abs(a - b) for a, b in zip(wanted, back)) / max(abs(a) for a in wanted)
+        ratio = steps_of(found) / max(1, steps_of(given))
+        what = f"{found['element']} {found.get('kinematics', 'space')}, {found['dofs']} dofs: off by {off:.1e}, Newton {steps_of(given)} -> {steps_of(found)}"
+        return (None if len(back) == len(wanted) and off <= SAME else f"displacements differ by {off:.2e}: {what}"), what, ratio
+    finally:
+        if keep:
+            shutil.copytree(folder, pathlib.Path(keep) / str(number), dirs_exist_ok=True)
+        shutil.rmtree(folder)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rpc", required=True)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--scenes", type=int, default=50)
+    parser.add_argument("--only", type=int)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--keep", help="folder for the files of all scenes")
+    options = parser.parse_args()
+    rpc, failed, ratios = os.path.abspath(options.rpc), 0, []
+    numbers = range(options.scenes) if options.only is None else [options.only]
+    with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
+        for number, (complaint, what, ratio) in zip(numbers, pool.map(lambda k: judge(rpc, options.seed, k, options.keep), numbers)):
+            failed += complaint is not None
+            ratios += [ratio] if ratio is not None else []
+            print(f"{number}: {'FAILED ' + complaint if complaint else what}", flush=True)
+    median = statistics.median(ratios) if ratios else 0
+    print(f"{failed} of {len(numbers)} failed; {len(ratios)} compared; Newton steps by force over those by displacement: median {median:.2f}, "
+          f"most {max(ratios, default=0):.2f}")
+    return 1 if failed or median > MOST_RATIO else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
