@@ -253,8 +253,23 @@ std::vector<Line> result_lines(const std::vector<Result> &results)
 }
 
 /// Where error bars come from, or how to have them.
+/// What is certain of the error.
+void print_bound(std::ostream &out, const Scene &scene, const Solution &s)
+{
+  if (!s.bound) return;
+  const bound::EnergyBound &b = *s.bound;
+  const std::string unit = scene.model.units.of(unit::energy, s.discretization.per_length());
+  print_text(out, "guaranteed",
+             b.missing.empty()
+                 ? "J of the exact solution is in [" + number_text("%.9g", b.lower) + ", " +
+                       number_text("%.9g", b.upper) + "] " + unit + "; error at most " +
+                       number_text("%.1e", b.energy_norm / std::sqrt(s.energy_norm_squared)) + " of the energy norm"
+                 : "nothing: " + b.missing);
+}
+
 void print_accuracy(std::ostream &out, const Scene &scene, const Solution &s)
 {
+  print_bound(out, scene, s);
   if (!s.estimate) {
     print_text(out, "errors",
                "not estimated: add \"Adapt->Target Relative Error\", such as 0.01, for error bars on meshes that are "

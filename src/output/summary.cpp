@@ -107,6 +107,35 @@ void add_balance(nlohmann::ordered_json &json, const Scene &scene, const Solutio
   json["energy_tolerance"]["at"] = off.at;
 }
 
+nlohmann::ordered_json bound_json(const bound::EnergyBound &b)
+{
+  nlohmann::ordered_json json;
+  const bool known = b.missing.empty();
+  json["kind"] = "guaranteed";
+  json["energy_J"] = known ? nlohmann::ordered_json({b.lower, b.upper}) : nlohmann::ordered_json();
+  json["energy_norm"] = known ? nlohmann::ordered_json(b.energy_norm) : nlohmann::ordered_json();
+  json["reason"] = b.missing;
+  json["moved_by"] = b.moved;
+  json["by_step"] = b.steps;
+  json["imbalance"] = b.imbalance;
+  json["linear_iterations"] = b.linear_iterations;
+  json["solve_seconds"] = b.solve_seconds;
+  json["seconds"] = b.seconds;
+  return json;
+}
+
+void add_bound(nlohmann::ordered_json &json, const Scene &scene, const Solution &s)
+{
+  if (s.bound) json["error_bound"] = bound_json(*s.bound);
+  if (scene.adapt.bound != adapt::ErrorBound::estimated || !s.has_results() || !s.estimate) return;
+  const double bar = errors_of(scene, s).energy;
+  const bool known = !std::isnan(bar);
+  json["error_bound"] = {{"kind", "estimated"}};
+  json["error_bound"]["energy_J"] =
+      known ? nlohmann::ordered_json({s.energy - bar, s.energy + bar}) : nlohmann::ordered_json();
+  json["error_bound"]["energy_norm"] = std::sqrt(s.estimate->total());
+}
+
 nlohmann::ordered_json cycle_json(const adapt::Cycle &c, const ResultScope &scope, const int dim)
 {
   nlohmann::ordered_json json = {{"dofs", c.dofs},
@@ -117,6 +146,7 @@ nlohmann::ordered_json cycle_json(const adapt::Cycle &c, const ResultScope &scop
     if (q.shown.meshes) json[q.name(scope)] = c.contact.*q.value;
   json["newton_iterations"] = c.newton_iterations;
   json["linear_iterations"] = c.linear_iterations;
+  if (c.bound) json["error_bound"] = bound_json(*c.bound);
   json["seconds"] = c.seconds;
   return json;
 }
@@ -213,6 +243,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   if (!s.history.empty()) add_steps(json, s, scope);
   add_balance(json, scene, s);
   add_errors(json, scene, s);
+  add_bound(json, scene, s);
   json["notes"] = s.notes;
   json["skipped"] = s.skipped;
   json["levels"] = nlohmann::ordered_json::array();

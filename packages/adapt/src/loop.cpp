@@ -2,6 +2,7 @@
 #include "earlier_steps.hpp"
 #include "next_mesh.hpp"
 #include "rpc/adapt/solve.hpp"
+#include "rpc/bound/rules.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/interrupt.hpp"
 #include "rpc/core/timed.hpp"
@@ -43,7 +44,15 @@ Solution with_estimate(const Task &task, const Listener &listener, const Run &ru
 {
   Solution s;
   auto all = static_cast<const analysis::Listener &>(listener);
+  const bool guaranteed = task.adapt.bound == ErrorBound::guaranteed;
+  if (guaranteed)
+    all.step.start = [&](const analysis::Problem &problem, const analysis::Step &step) {
+      bound::require_covered(problem, step);
+      if (listener.step.start) listener.step.start(problem, step);
+    };
   all.solved = [&](const analysis::Problem &problem, analysis::Solution &found) {
+    if (guaranteed && found.has_results())
+      s.bound = bound::energy_bound(problem, found, task.linear_solver, bound::bound_rules.steps);
     const contact::ContactNodes &points = found.step.contact;
     const Comm &comm = found.discretization.mesh->comm();
     const auto &pressure = found.contact.pressure;
@@ -100,6 +109,7 @@ Cycle cycle_of(const Solution &s, const double seconds)
   cycle.misread_energy = s.estimate->misread_energy;
   cycle.misread_penetration = s.estimate->misread_penetration;
   cycle.misses_contact = s.estimate->misses_contact();
+  cycle.bound = s.bound;
   cycle.seconds = seconds;
   return cycle;
 }

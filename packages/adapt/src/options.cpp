@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/adapt/options.hpp"
 
+#include "rpc/bound/bound.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/core/remedies.hpp"
@@ -38,6 +39,12 @@ Teuchos::ParameterList valid_adapt_parameters()
             "a .msh, which gmsh cannot mesh anew, and of an rpc that was built without gmsh; else gmsh.");
   valid.set("Max Cycles", 12, "Meshes, > 0.");
   valid.set("Estimate Error", false, "Estimate the error without refining; with a target that is done anyway.");
+  set_words(
+      valid, "Error Bound", {"none", "estimated", "guaranteed"},
+      "An interval for the energy, and a bound of the error in the energy norm: `estimated` by the recovered stress, "
+      "which may be too small, or `guaranteed`. Guaranteed are plane bodies of triangles or parallelograms that "
+      "displacements hold, on one rank, without load steps, friction, hardening and springs, on straight contact "
+      "sides; for other decks it is refused. It takes about as long as two elastic solves.");
   valid.set("Exact Energy", std::numeric_limits<double>::quiet_NaN(),
             "J of the exact solution [J], in 2D per m, to compare the estimate with; nan, which is to leave it out: "
             "unknown.");
@@ -53,6 +60,13 @@ AdaptOptions adapt_options(const Teuchos::ParameterList &list)
   options.max_cycles = list.get<int>("Max Cycles");
   options.exact_energy = list.get<double>("Exact Energy");
   options.estimate = list.get<bool>("Estimate Error") || options.adapts();
+  const auto &bound = list.get<std::string>("Error Bound");
+  RPC_REQUIRE(bound == "none" || bound == "estimated" || bound == "guaranteed",
+              "deck: \"Adapt->Error Bound\" must be one of none, estimated, guaranteed, got \"" << bound << "\"");
+  options.bound = bound == "estimated"    ? ErrorBound::estimated
+                  : bound == "guaranteed" ? ErrorBound::guaranteed
+                                          : ErrorBound::none;
+  options.estimate = options.estimate || options.bound == ErrorBound::estimated;
   options.write_all = list.get<bool>("Write All");
   const auto &meshes = list.get<std::string>("Meshes");
   RPC_REQUIRE(meshes == "automatic" || meshes == "gmsh" || meshes == "nested",
@@ -85,6 +99,7 @@ std::optional<mesh::MeshOptions> sized(const mesh::MeshOptions &first, const Ada
 
 void require_adaptable(const Task &task)
 {
+  if (task.adapt.bound == ErrorBound::guaranteed) bound::require_covered(task);
   RPC_REQUIRE(
       !task.adapt.adapts() || nests(task.mesh, task.adapt) || mesh::has_gmsh(),
       "deck: \"Adapt->Meshes\" = gmsh needs gmsh, and this rpc was built without it. Write nested, or automatic.");

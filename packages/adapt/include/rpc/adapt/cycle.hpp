@@ -2,10 +2,12 @@
 #pragma once
 
 #include "rpc/adapt/estimator.hpp"
+#include "rpc/bound/bound.hpp"
 #include "rpc/core/quantity.hpp"
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +31,8 @@ struct Cycle {
   double misread_force = 0, misread_energy = 0, misread_penetration = 0; ///< the same, and [m]
   bool misses_contact = false; ///< contact that no contact point sees is most of the estimate, (10.4b)
   int newton_iterations = 0;
-  std::vector<int> linear_iterations; ///< per solve
+  std::vector<int> linear_iterations;      ///< per solve
+  std::optional<bound::EnergyBound> bound; ///< where it is asked for
   double seconds = 0;
 };
 

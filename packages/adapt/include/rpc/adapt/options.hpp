@@ -17,13 +17,21 @@ enum class NextMeshes {
   nested     ///< cells of the first one are halved where a field of sizes asks for it
 };
 
+/// What is said of the error of the energy and of the displacement.
+enum class ErrorBound {
+  none,
+  estimated, ///< by the recovered stress: an estimate, which may be too small
+  guaranteed ///< by stresses in equilibrium, where that is built; doc/theory.md, section 13
+};
+
 struct AdaptOptions {
   double target = 0;       ///< of the relative error in the energy norm, in (0, 1); 0: one mesh, as it is given
   long long max_dofs = 0;  ///< of any mesh but the first, > 0
   int max_cycles = 0;      ///< meshes, > 0
   double exact_energy = 0; ///< J of the exact solution [J], in 2D per m; NaN: unknown
   bool estimate = false;   ///< whether the error is estimated; adapting implies it
-  bool write_all = false;  ///< results of every mesh, not of the last only
+  ErrorBound bound = ErrorBound::none;
+  bool write_all = false; ///< results of every mesh, not of the last only
   NextMeshes meshes = NextMeshes::automatic;
 
   bool adapts() const { return target > 0; }
@@ -48,7 +56,7 @@ struct Task : analysis::Task {
   AdaptOptions adapt;
 };
 
-/// @throws rpc::Error (bad_input) unless the task's mesh can be adapted where that is asked for
+/// @throws rpc::Error (bad_input) unless the task's mesh can be adapted, and its error be bounded, where that is asked for
 void require_adaptable(const Task &task);
 
 } // namespace rpc::adapt

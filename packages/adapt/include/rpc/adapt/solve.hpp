@@ -17,7 +17,8 @@ namespace rpc::adapt
 struct Solution : analysis::Solution {
   double pressure_norm = 0;   ///< L2 norm of the contact pressure [Pa m^(1/2)], in 3D [Pa m]; where meshes are adapted
   double pressure_change = 0; ///< the same of its change since the mesh before, if there was one
-  std::optional<ErrorEstimate> estimate; ///< where it is asked for
+  std::optional<ErrorEstimate> estimate;   ///< where it is asked for
+  std::optional<bound::EnergyBound> bound; ///< guaranteed, where it is asked for
   double largest_estimate =
       0; ///< of load steps so far, of the error in the energy norm [J^(1/2)], in 2D per m; NaN: not known
   std::optional<Adaptation> adaptation; ///< where the mesh is adapted

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "rpc/analysis/run.hpp"
+
+#include <string>
+#include <vector>
+
+namespace rpc::bound
+{
+
+/// Bounds of the energy of the exact solution and of the error of a discrete one, without a constant that would have to be estimated.
+///                                                                                                  doc/theory.md, section 13
+struct EnergyBound {
+  double lower = 0, upper = 0; ///< of J(u) [J], in 2D per m
+  double energy_norm = 0;      ///< |u - u_h| is not larger [J^(1/2)], in 2D per m
+  double moved = 0;            ///< |u^ - u_h|, by how much u_h was moved out of the foundation [J^(1/2)]
+  std::vector<double> steps;   ///< J(u^) - D(sigma) after 0, 1, ... steps of conjugate gradients on tractions [J]
+  double imbalance = 0;        ///< largest force that is out of balance on a cell, over the largest on a side of one
+  int linear_iterations = 0;   ///< of the elastic solve
+  double solve_seconds = 0;    ///< that it took, with what it sets up
+  double seconds = 0;          ///< of all
+  std::string missing;         ///< why there is no bound; empty if there is one
+};
+
+/// Whether the bound is known for a task; needs no mesh.
+/// @throws rpc::Error (bad_input) naming what is covered, if not
+void require_covered(const analysis::Task &task);
+/// The same of a step on its mesh; collective.
+/// @throws rpc::Error (bad_input)
+void require_covered(const analysis::Problem &problem, const analysis::Step &step);
+
+/// Collective. @param solution  of a step that require_covered() admits
+/// @param steps  of conjugate gradients, see bound_rules
+EnergyBound energy_bound(const analysis::Problem &problem, const analysis::StepSolution &solution,
+                         const solver::LinearSolverOptions &options, int steps);
+
+} // namespace rpc::bound

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "cell_stress.hpp"
+#include "rpc/core/tpetra.hpp"
+
+namespace rpc::bound
+{
+
+/// Coefficients of tractions: (facets * (k + 1) * 2), facet by facet, of the polynomials P_j.
+using Tractions = DeviceView<double *>;
+
+/// The energies of the cells by their tractions, the inner stresses at their best:
+///
+///     E_T(t) = t . A t/2 + b . t + const.                                                             doc/theory.md (13.8)
+struct CellForms {
+  DeviceView<double ***> A; ///< (cells, tractions, tractions), in the signs of the facets
+  DeviceView<double **> b;  ///< (cells, tractions)
+};
+
+/// @param u  (owned dofs) the displacement whose stress the others are compared with [m]
+CellForms cell_forms(const CellInput &in, const Vector &u);
+
+/// The derivative of the sum of the energies by the tractions, or with linear = false A x.
+/// @param[out] scratch  (cells, tractions)
+void add_up(const CellInput &in, const CellForms &forms, const Tractions &t, bool linear,
+            const DeviceView<double **> &scratch, const Tractions &sum);
+
+/// What the stresses of tractions leave.
+struct StressDifference {
+  double energy = 0;    ///< |sigma - C eps(u)|^2 / 2 over the body [J], in 2D per m
+  double imbalance = 0; ///< largest force or moment, by the size of the cell, that is out of balance on a cell [N]
+  double force = 0;     ///< largest force of a traction on a cell [N]
+};
+/// @param of_cell  (cells) the energy of each, out
+StressDifference stress_difference(const CellInput &in, const Tractions &t, const Vector &u,
+                                   const DeviceView<double *> &of_cell);
+
+/// Norm |tau| of stresses that lift what the loads of facets have beyond degree k, in the norm of C^-1 [J^(1/2)].
+/// @param load  (facets, degrees, 2) coefficients of the tractions on the boundary, by unit of the parameter
+double norm_of_lifted_loads(const CellInput &in, const LiftedLoads &lifted, const DeviceView<double ***> &load);
+
+/// Moments in the cells: Q_a = int C eps(u) grad N_a - int f N_a.
+/// @return (cells, nodes, 2) [N]
+DeviceView<double ***> nodal_forces(const CellInput &in, const fem::Discretization &d, const Vector &u);
+
+/// Means over the cells at a facet of the moments of the tractions of C eps(u) with the functions of order 1 or 2 that belong to both
+/// vertices: (facets, 2, 2) [N]
+DeviceView<double ***> mean_moments(const CellInput &in, const Vector &u);
+
+/// By how much nodes lie off the affine map of their cells, over the cells' size.
+double largest_distortion(const CellInput &in, const mesh::Element &element);
+
+} // namespace rpc::bound

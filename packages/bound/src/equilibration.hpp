@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "cells.hpp"
+
+namespace rpc::bound
+{
+
+/// What is known of the tractions on the boundary.
+struct BoundaryTractions {
+  DeviceView<char *[2]> known; ///< (facets, component) 1 where the traction is prescribed
+  DeviceView<double ***> load; ///< (facets, degree_of_loads + 1, 2) coefficients where it is [N]
+};
+
+/// The moments int t N_a over each facet of the known tractions with the element's functions: (facets, nodes of a facet, 2) [N].
+DeviceView<double ***> known_moments(const CellInput &in, const BoundaryTractions &boundary);
+
+/// Tractions in balance with the body force on each cell, from the moments of a Galerkin solution.     doc/theory.md (13.7)
+/// @param Q     nodal_forces() of the solution of the loads `boundary`
+/// @param mean  mean_moments() of it, to which the tractions are to be near
+Tractions equilibrated(const CellInput &in, const BoundaryTractions &boundary, const DeviceView<double ***> &Q,
+                       const DeviceView<double ***> &mean);
+
+} // namespace rpc::bound

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "star_solves.hpp"
+
+namespace rpc::bound
+{
+namespace
+{
+
+/// The modes of a star, as kernels see them.
+struct StarModes {
+  static constexpr int most = 6; ///< on a spoke: force, force, moment, and up to three without a wrench
+  CellInput in;
+  BoundaryTractions boundary;
+
+  KOKKOS_FUNCTION int own() const { return in.reference.degree == 1 ? 1 : 3; } ///< modes of each spoke
+  KOKKOS_FUNCTION int size(const LO node) const
+  {
+    const int spokes = in.facets.num_spokes(node);
+    return spokes == 0 ? 0 : 3 + own() * spokes;
+  }
+  KOKKOS_FUNCTION std::size_t first(const LO node) const
+  {
+    return 3 * static_cast<std::size_t>(node) + own() * in.facets.first_spoke(node);
+  }
+
+  /// Components of the traction on a spoke that are free: 0, 1, or 2 for both; -1: none.
+  KOKKOS_FUNCTION int free_components(const LO f) const
+  {
+    if (!in.facets.on_boundary(f)) return 2;
+    const bool x = !boundary.known(f, 0), y = !boundary.known(f, 1);
+    return x && y ? 2 : (x ? 0 : (y ? 1 : -1));
+  }
+  KOKKOS_FUNCTION void vector_of(const LO node, const LO f, double (&e)[2]) const
+  {
+    const int end = in.facets.node(f, 0) == node ? 1 : 0;
+    for (int i = 0; i < 2; ++i) e[i] = in.coords(in.facets.node(f, end), i) - in.coords(node, i);
+  }
+  /// Whether the star hands on forces in x, in y and moments: as far as the free tractions of both ends on the boundary can.
+  KOKKOS_FUNCTION void common(const LO node, bool (&may)[3]) const
+  {
+    const int spokes = in.facets.num_spokes(node);
+    may[0] = may[1] = may[2] = true;
+    if (spokes == in.facets.num_cells(node)) return;
+    for (int k = 0; k < spokes; k += spokes - 1) {
+      const LO f = in.facets.spoke(in.facets.first_spoke(node) + k);
+      const int free = free_components(f);
+      double e[2];
+      vector_of(node, f, e);
+      // A single component has a moment where it is not along the spoke.
+      const double across = free == 0 ? e[1] : e[0], along = free == 0 ? e[0] : e[1];
+      const bool has_moment = free == 2 || (free >= 0 && math::magnitude(across) > 0.1 * math::magnitude(along));
+      may[0] = may[0] && has_moment && free != 1;
+      may[1] = may[1] && has_moment && free != 0;
+      may[2] = may[2] && has_moment;
+    }
+  }
+
+  /// (2 (k + 1), modes) The tractions of a facet that belong to the modes at its spoke, in the signs of the facet; others are 0.
+  KOKKOS_FUNCTION void of_spoke(const LO node, const int k, double (&M)[6][most]) const
+  {
+    for (auto &row : M)
+      for (double &entry : row) entry = 0;
+    const std::size_t at = in.facets.first_spoke(node) + k;
+    const LO f = in.facets.spoke(at);
+    const int free = free_components(f), degree = in.reference.degree;
+    if (free < 0) return;
+    double e[2];
+    vector_of(node, f, e);
+    const double squared = e[0] * e[0] + e[1] * e[1], size = math::sqrt(squared), toward = in.facets.toward(at);
+    const double odd = in.facets.node(f, 0) == node ? toward : -toward; // of degree 1 from the vertex on
+    const double across[2] = {-e[1], e[0]};
+    bool may[3];
+    common(node, may);
+    if (free == 2) {
+      for (int c = 0; c < 2; ++c) {
+        const double moment = c == 0 ? -e[1] : e[0]; // of the force e_c at the end
+        if (may[c]) {
+          M[c][c] = toward;
+          for (int i = 0; i < 2; ++i) M[2 + i][c] = -3 * odd * moment * across[i] / squared;
+        }
+      }
+      for (int i = 0; i < 2 && may[2]; ++i) M[2 + i][2] = 6 * odd * scale(node) * across[i] / squared;
+      for (int i = 0; i < 2; ++i) M[2 + i][3] = odd * e[i] / size;
+      if (degree == 2)
+        for (int i = 0; i < 2; ++i) M[4 + i][4 + i] = toward;
+      return;
+    }
+    const double moment = free == 0 ? -e[1] : e[0];
+    if (may[free]) {
+      M[free][free] = toward;
+      M[2 + free][free] = -3 * odd; // takes the moment back
+    }
+    if (may[2]) M[2 + free][2] = 6 * odd * scale(node) / moment;
+    if (degree == 2) M[4 + free][4] = toward;
+  }
+  /// The unit of moments: a length of the star.
+  KOKKOS_FUNCTION double scale(const LO node) const
+  {
+    double e[2];
+    vector_of(node, in.facets.spoke(in.facets.first_spoke(node)), e);
+    return math::sqrt(e[0] * e[0] + e[1] * e[1]);
+  }
+  /// The place of a spoke's mode among those of its star.
+  KOKKOS_FUNCTION int place(const int k, const int mode) const { return mode < 3 ? mode : 3 + own() * k + mode - 3; }
+};
+
+/// The energy of each star in its modes, and its Cholesky factor.
+struct FactorStars {
+  StarModes modes;
+  CellForms forms;
+  DeviceView<std::size_t *> first;
+  DeviceView<double *> factor;
+
+  KOKKOS_FUNCTION void add_cell(const LO node, const int k, const int n, double *H) const
+  {
+    const CellInput &in = modes.in;
+    const int spokes = in.facets.num_spokes(node), per_facet = 2 * (in.reference.degree + 1), both = 3 + modes.own();
+    const int spoke[2] = {k, (k + 1) % spokes};
+    const LO c = in.facets.star_cell(in.facets.first(node) + k);
+    const int corner = in.facets.star_corner(in.facets.first(node) + k), sides = in.reference.sides;
+    const int ordinal[2] = {corner, (corner + sides - 1) % sides};
+    double M[2][6][StarModes::most];
+    for (int s = 0; s < 2; ++s) modes.of_spoke(node, spoke[s], M[s]);
+    for (int s = 0; s < 2; ++s)
+      for (int r = 0; r < 2; ++r)
+        for (int b = 0; b < both; ++b) {
+          double Am[6]; // A times a mode
+          for (int p = 0; p < per_facet; ++p) {
+            Am[p] = 0;
+            for (int q = 0; q < per_facet; ++q)
+              Am[p] += forms.A(c, ordinal[s] * per_facet + p, ordinal[r] * per_facet + q) * M[r][q][b];
+          }
+          for (int a = 0; a < both; ++a) {
+            double sum = 0;
+            for (int p = 0; p < per_facet; ++p) sum += M[s][p][a] * Am[p];
+            H[modes.place(spoke[s], a) * n + modes.place(spoke[r], b)] += sum;
+          }
+        }
+  }
+
+  KOKKOS_FUNCTION void operator()(const LO node) const
+  {
+    const int n = modes.size(node);
+    if (n == 0) return;
+    double *const H = factor.data() + first(node);
+    for (int i = 0; i < n * n; ++i) H[i] = 0;
+    for (int k = 0; k < modes.in.facets.num_cells(node); ++k) add_cell(node, k, n, H);
+    for (int j = 0; j < n; ++j) {
+      const double own = H[j * n + j];
+      for (int k = 0; k < j; ++k)
+        for (int i = j; i < n; ++i) H[i * n + j] -= H[i * n + k] * H[j * n + k];
+      if (!(H[j * n + j] > 1e-12 * own)) { // a mode that is not there
+        for (int i = j; i < n; ++i) H[i * n + j] = 0;
+        H[j * n + j] = math::infinity<double>;
+        continue;
+      }
+      const double pivot = math::sqrt(H[j * n + j]);
+      for (int i = j; i < n; ++i) H[i * n + j] /= pivot;
+    }
+  }
+};
+
+double inner_product(const Tractions &x, const Tractions &y)
+{
+  double sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::bound::inner_product", device_range(static_cast<LO>(x.extent(0))),
+      KOKKOS_LAMBDA(const LO i, double &part) { part += x(i) * y(i); }, sum);
+  return sum;
+}
+
+/// x <- a x + b y.
+void combine(const double a, const Tractions &x, const double b, const Tractions &y)
+{
+  Kokkos::parallel_for(
+      "rpc::bound::combine", device_range(static_cast<LO>(x.extent(0))),
+      KOKKOS_LAMBDA(const LO i) { x(i) = a * x(i) + b * y(i); });
+  Kokkos::fence();
+}
+
+} // namespace
+
+StarSolves::StarSolves(const CellInput &in, const BoundaryTractions &boundary, const CellForms &forms)
+    : in_(in), boundary_(boundary)
+{
+  const LO nodes = static_cast<LO>(in.facets.num_spokes.extent(0));
+  first_ = DeviceView<std::size_t *>("rpc::bound::first", nodes + 1);
+  const auto first = first_;
+  const StarModes modes{in, boundary};
+  std::size_t total = 0;
+  Kokkos::parallel_scan(
+      "rpc::bound::sizes_of_stars", device_range(nodes),
+      KOKKOS_LAMBDA(const LO node, std::size_t &before, const bool last) {
+        if (last) first(node) = before;
+        const std::size_t n = modes.size(node);
+        before += n * n;
+      },
+      total);
+  factor_ = DeviceView<double *>(Kokkos::view_alloc("rpc::bound::factor", Kokkos::WithoutInitializing), total);
+  answer_ =
+      DeviceView<double *>("rpc::bound::answer", 3 * static_cast<std::size_t>(nodes) + 3 * in.facets.spoke.extent(0));
+  Kokkos::parallel_for("rpc::bound::factor_stars", device_range(nodes), FactorStars{modes, forms, first_, factor_});
+  Kokkos::fence();
+}
+
+void StarSolves::apply(const Tractions &g, const Tractions &z) const
+{
+  const StarModes modes{in_, boundary_};
+  const auto first = first_;
+  const auto factor = factor_, answer = answer_;
+  const int per_facet = 2 * (in_.reference.degree + 1), both = 3 + (in_.reference.degree == 1 ? 1 : 3);
+  Kokkos::parallel_for(
+      "rpc::bound::solve_stars", device_range(static_cast<LO>(in_.facets.num_spokes.extent(0))),
+      KOKKOS_LAMBDA(const LO node) {
+        const int n = modes.size(node);
+        if (n == 0) return;
+        double *const y = answer.data() + modes.first(node);
+        for (int i = 0; i < n; ++i) y[i] = 0;
+        for (int k = 0; k < modes.in.facets.num_spokes(node); ++k) {
+          double M[6][StarModes::most];
+          modes.of_spoke(node, k, M);
+          const LO f = modes.in.facets.spoke(modes.in.facets.first_spoke(node) + k);
+          for (int b = 0; b < both; ++b)
+            for (int p = 0; p < per_facet; ++p) y[modes.place(k, b)] += M[p][b] * g(f * per_facet + p);
+        }
+        const double *const L = factor.data() + first(node);
+        for (int i = 0; i < n; ++i) {
+          for (int k = 0; k < i; ++k) y[i] -= L[i * n + k] * y[k];
+          y[i] /= L[i * n + i];
+        }
+        for (int i = n - 1; i >= 0; --i) {
+          for (int k = i + 1; k < n; ++k) y[i] -= L[k * n + i] * y[k];
+          y[i] /= L[i * n + i];
+        }
+      });
+  Kokkos::parallel_for(
+      "rpc::bound::gather_stars", device_range(in_.facets.size()), KOKKOS_LAMBDA(const LO f) {
+        for (int p = 0; p < per_facet; ++p) z(f * per_facet + p) = 0;
+        for (int end = 0; end < 2; ++end) {
+          const LO node = modes.in.facets.node(f, end);
+          const int k = modes.in.facets.place(f, end);
+          double M[6][StarModes::most];
+          modes.of_spoke(node, k, M);
+          for (int b = 0; b < both; ++b)
+            for (int p = 0; p < per_facet; ++p)
+              z(f * per_facet + p) += M[p][b] * answer(modes.first(node) + modes.place(k, b));
+        }
+      });
+  Kokkos::fence();
+}
+
+Descent::Descent(const CellInput &in, const BoundaryTractions &boundary, const CellForms &forms, const Tractions &t)
+    : in_(in), forms_(forms), stars_(in, boundary, forms), t_(t), g_("rpc::bound::g", t.extent(0)),
+      z_("rpc::bound::z", t.extent(0)), d_("rpc::bound::d", t.extent(0)), Ad_("rpc::bound::Ad", t.extent(0)),
+      scratch_("rpc::bound::scratch", in.num_cells(), in.reference.tractions)
+{
+  add_up(in_, forms_, t_, true, scratch_, g_);
+}
+
+double Descent::step()
+{
+  stars_.apply(g_, z_);
+  const double rho = inner_product(g_, z_);
+  if (!(rho > 0)) return 0;
+  combine(rho_ > 0 ? rho / rho_ : 0, d_, -1, z_);
+  rho_ = rho;
+  add_up(in_, forms_, d_, false, scratch_, Ad_);
+  const double curvature = inner_product(d_, Ad_);
+  if (!(curvature > 0)) return 0;
+  const double length = rho / curvature;
+  combine(1, t_, length, d_);
+  combine(1, g_, length, Ad_);
+  return rho * length / 2;
+}
+
+} // namespace rpc::bound

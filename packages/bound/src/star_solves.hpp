@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "equilibration.hpp"
+
+namespace rpc::bound
+{
+
+/// Additive Schwarz on tractions that are in balance on each cell without loads: those on the spokes of a star. They are one force and
+/// moment that all its spokes hand on, and on each spoke tractions without force and moment.                 doc/theory.md (13.9)
+class StarSolves
+{
+public:
+  /// Factors the energies of all stars.
+  StarSolves(const CellInput &in, const BoundaryTractions &boundary, const CellForms &forms);
+  /// z <- sum over the stars of what least energy answers to the derivative g with.
+  void apply(const Tractions &g, const Tractions &z) const;
+
+private:
+  CellInput in_;
+  BoundaryTractions boundary_;
+  DeviceView<std::size_t *> first_; // (nodes + 1) where the factor of a star begins
+  DeviceView<double *> factor_;     // row by row
+  DeviceView<double *> answer_;     // (3 nodes + modes of spokes)
+};
+
+/// One step of the method of conjugate gradients after the other, which lowers the energy of the tractions. Tractions stay in balance.
+class Descent
+{
+public:
+  Descent(const CellInput &in, const BoundaryTractions &boundary, const CellForms &forms, const Tractions &t);
+  /// @return by how much the energy falls [J]
+  double step();
+
+private:
+  CellInput in_;
+  CellForms forms_;
+  StarSolves stars_;
+  Tractions t_, g_, z_, d_, Ad_;
+  DeviceView<double **> scratch_;
+  double rho_ = 0;
+};
+
+} // namespace rpc::bound

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "contact_pressure.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace contact_pressure_test
+{
+namespace
+{
+
+using namespace rpc;
+using namespace rpc::bound;
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+/// A side of n facets of length 1 whose nodes bear the forces of a pressure, by trapezoids or Simpson's rule.
+template <class Pressure>
+ContactFacets side(const int order, const int n, const double limit, const Pressure &pressure)
+{
+  ContactFacets c;
+  c.order = order;
+  c.limit = limit;
+  c.modulus = 1000;
+  const int points = order * n + 1;
+  c.force.assign(points, 0.);
+  for (int i = 0; i < points; ++i) {
+    c.place.push_back(static_cast<double>(i) / order);
+    c.free.push_back(1);
+  }
+  for (int e = 0; e < n; ++e) {
+    c.facet.push_back(e);
+    c.length.push_back(1);
+    c.normal.push_back({0, -1});
+    c.point.push_back(order == 1 ? std::array<int, 3>{e, e + 1, -1} : std::array<int, 3>{2 * e, 2 * e + 2, 2 * e + 1});
+    const double weight[3] = {order == 1 ? 1. / 2 : 1. / 6, order == 1 ? 1. / 2 : 1. / 6, 4. / 6};
+    c.pressure.push_back({});
+    for (int a = 0; a <= order; ++a) {
+      c.pressure[e][a] = pressure(c.place[c.point[e][a]]);
+      c.force[c.point[e][a]] += weight[a] * c.pressure[e][a];
+    }
+  }
+  return c;
+}
+
+TEST(ContactIntegrals, AreThoseOfHandAlgebra)
+{
+  // v = 2 x - 1, p = 1, xi = 3: xi v+ has 3/4, (xi - p) v+ + p v- has 2/4 + 1/4.
+  const ContactIntegrals linear = contact_integrals(1, {-1, 1, 0}, {1, 1, 0}, 3);
+  EXPECT_NEAR(linear.yielding, 0.75, 1e-14);
+  EXPECT_NEAR(linear.gap, 0.75, 1e-14);
+  // v = 4 x (1 - x) - 3/4 is positive between 1/4 and 3/4, p = x (1 - x) has the Bernstein coefficients 0, 1/2, 0.
+  // The integral of v+ is 1/12 and that of p v+ 19/960 ... by exact integration of polynomials.
+  const auto power = [](const double a, const double b, const int n) {
+    return (std::pow(b, n + 1) - std::pow(a, n + 1)) / (n + 1);
+  };
+  const auto v = [&](const double a, const double b) {
+    return 4 * power(a, b, 1) - 4 * power(a, b, 2) - 0.75 * power(a, b, 0);
+  };
+  const auto pv = [&](const double a, const double b) {
+    return -0.75 * power(a, b, 1) + 4.75 * power(a, b, 2) - 8 * power(a, b, 3) + 4 * power(a, b, 4);
+  };
+  const ContactIntegrals quadratic = contact_integrals(2, {-0.75, -0.75, 0.25}, {0, 0.5, 0}, 3);
+  EXPECT_NEAR(quadratic.yielding, 3 * v(0.25, 0.75), 1e-14);
+  EXPECT_NEAR(quadratic.gap, 3 * v(0.25, 0.75) - pv(0, 1), 1e-14);
+  // Rigid: p v- alone.
+  const ContactIntegrals rigid = contact_integrals(2, {-1, -1, -1}, {2, 2, 2}, inf);
+  EXPECT_EQ(rigid.yielding, 0);
+  EXPECT_NEAR(rigid.gap, 2, 1e-14);
+}
+
+TEST(FittedPressure, IsTheOneThatTheForcesComeFromWhereThatIsAPolynomial)
+{
+  for (const int order : {1, 2}) {
+    const ContactFacets c = side(order, 12, inf, [](const double) { return 7.; });
+    const auto p = fitted_pressure(c, std::vector<OfFacet>(12, OfFacet{}));
+    for (const OfFacet &facet : p)
+      for (int i = 0; i <= order; ++i) EXPECT_NEAR(facet[i], 7, 1e-6);
+  }
+}
+
+TEST(FittedPressure, KeepsToTheYieldStressAndNearToTheForces)
+{
+  for (const int order : {1, 2}) {
+    const auto clamped = [](const double x) { return std::min(5., std::max(0., 9 - 1.7 * x)); };
+    const ContactFacets c = side(order, 12, 5, clamped);
+    const auto p = fitted_pressure(c, std::vector<OfFacet>(12, OfFacet{}));
+    double force = 0, wanted = 0;
+    for (const double f : c.force) wanted += f;
+    for (const OfFacet &facet : p)
+      for (int i = 0; i <= order; ++i) {
+        EXPECT_GE(facet[i], 0);
+        EXPECT_LE(facet[i], 5);
+        force += facet[i] / (order + 1);
+      }
+    EXPECT_NEAR(force, wanted, 2e-3 * wanted);
+  }
+}
+
+TEST(FittedPressure, DoesNotPressWhereTheBodyIsOffTheFoundation)
+{
+  const ContactFacets c = side(1, 8, inf, [](const double x) { return x < 4 ? 1. : 0.; });
+  std::vector<OfFacet> v(8, OfFacet{});
+  for (int e = 4; e < 8; ++e) v[e] = {-0.1 * (e - 4), -0.1 * (e - 3), 0};
+  const auto p = fitted_pressure(c, v);
+  for (int e = 5; e < 8; ++e)
+    for (int i = 0; i < 2; ++i) EXPECT_EQ(p[e][i], 0);
+}
+
+TEST(LoweredMiddle, LeavesNoPenetrationBetweenTheNodes)
+{
+  const OfFacet v = {-0.1, 0, 0};
+  const OfFacet lowered = {v[0], v[1], lowered_middle(v)};
+  for (const double coefficient : bernstein(2, lowered)) EXPECT_LE(coefficient, 1e-16);
+  EXPECT_EQ(lowered_middle({-1, -1, -2}), -2);
+}
+
+} // namespace
+} // namespace contact_pressure_test
