@@ -242,4 +242,10 @@ ObservedErrors observed_errors(std::vector<Cycle> cycles, const CoarserHistory &
   return errors;
 }
 
+std::size_t best_of(const std::vector<Cycle> &cycles)
+{
+  const auto less = [](const Cycle &a, const Cycle &b) { return a.estimate < b.estimate; };
+  return std::min_element(cycles.begin(), cycles.end(), less) - cycles.begin();
+}
+
 } // namespace rpc::adapt

@@ -134,13 +134,6 @@ FixedByLoad fixed_by_load(const analysis::Model &model)
   return fixed;
 }
 
-/// The mesh with the least estimate; with the target met that is the last one.
-std::size_t best_of(const std::vector<Cycle> &cycles)
-{
-  const auto less = [](const Cycle &a, const Cycle &b) { return a.estimate < b.estimate; };
-  return std::min_element(cycles.begin(), cycles.end(), less) - cycles.begin();
-}
-
 /// Of meshes that grow alike, from the next one to the last.
 /// @param per_dof  what an unknown of the last mesh took [s]: mesh, matrix, solves, estimate and the plan before it
 double seconds_for(const Forecast &forecast, const double per_dof)

@@ -100,6 +100,9 @@ struct EarlierSteps {
 ObservedErrors observed_errors(std::vector<Cycle> cycles, const CoarserHistory &coarser, const EarlierSteps &earlier,
                                const FixedByLoad &fixed = {}, double tolerance = 0);
 
+/// The mesh with the least estimate; with the target met that is the last one.
+std::size_t best_of(const std::vector<Cycle> &cycles);
+
 /// What became of "Adapt".
 struct Adaptation {
   bool reached = false;      ///< the target
