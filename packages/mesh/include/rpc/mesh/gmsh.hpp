@@ -44,7 +44,7 @@ struct GmshOptions {
   double size = 0;                   ///< of the cells of a STEP, IGES, BREP or STL [m]; 0: a tenth of the body
   std::vector<SidePlace> sides = {}; ///< besides those that the file has
   bool list_surfaces = false;        ///< the mesh is to have its geometry
-  std::string length_unit = {};      ///< of a deck that names it; empty: a note tells what a file of shapes is taken for
+  std::string length_unit = {}; ///< of a deck that names it; empty: a note tells what a file of shapes is taken for
 
   bool needs_geometry() const { return refinements > 0 || nested; } ///< for new nodes on curved boundaries
 };
