@@ -3,7 +3,7 @@
 /// functions that it calls follow.
 #include "rpc/analysis/solve_step.hpp"
 
-#include "mean_displacements.hpp"
+#include "body/mean_displacements.hpp"
 #include "rpc/analysis/active_set.hpp"
 #include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/analysis/rules.hpp"
