@@ -24,7 +24,7 @@ def wedge():
 def rounded_punch():
     punch = far_fields.ROUNDED_PUNCH
     low, high = far_fields.FLAT, 1.0  # the pressure is largest beyond the flat part
-    for _ in range(60):
+    for _ in range(25):
         thirds = low + (high - low) / 3, high - (high - low) / 3
         low, high = (thirds[0], high) if punch.pressure(thirds[0]) < punch.pressure(thirds[1]) else (low, thirds[1])
     return Problem(
