@@ -156,6 +156,7 @@ def faults_of(command, tools, folder):
 
 
 def faults_of_arguments(arguments, tools, folder):
+    makes_surface = any(word.startswith("--make-surface=") for word in arguments)  # which has parameters of its own
     for word in arguments:
         option, _, value = word.partition("=")
         placeholder = re.fullmatch(r"[A-Z_]+(\.\w+)?", value)
@@ -166,7 +167,7 @@ def faults_of_arguments(arguments, tools, folder):
         elif option == "--input" and value and not placeholder:
             if not any((place / value).exists() for place in (folder, tools.source, tools.source / "input")):
                 yield f"there is no deck {value}"
-        elif option == "--set" and "=" in value:
+        elif option == "--set" and "=" in value and not makes_surface:
             path = value.split("=")[0].strip()
             if path not in PLACEHOLDERS and not any(pattern.fullmatch(path) for pattern in tools.parameters):
                 yield f'a deck has no parameter "{path}"'

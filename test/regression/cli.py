@@ -14,7 +14,7 @@ import xml.etree.ElementTree as ElementTree
 from rpc_run import BEAM, SMALL, SOURCE, RpcTestCase, errors, files, run_all
 
 YAML = SOURCE / "test" / "regression" / "decks" / "beam.yaml"
-OPTIONS = ["--input", "--output", "--restart", "--set", "--check", "--mesh-info", "--new", "--print-parameters", "--print-schema", "--version", "--help", "--kokkos-"]
+OPTIONS = ["--input", "--output", "--restart", "--set", "--check", "--make-surface", "--mesh-info", "--new", "--print-parameters", "--print-schema", "--version", "--help", "--kokkos-"]
 SUBLISTS = ["Units", "Mesh", "Material", "Dirichlet", "Traction", "Body Force", "Contact", "Steps", "Nested Iteration", "Adapt", "Uzawa", "NOX", "Linear Solver",
             "Linear Solver->Belos", "Linear Solver->MueLu", "Output"]
 
