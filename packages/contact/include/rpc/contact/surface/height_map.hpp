@@ -7,6 +7,7 @@
 #include "rpc/core/file_reader.hpp"
 #include "rpc/core/point.hpp"
 
+#include <Teuchos_ParameterList.hpp>
 #include <memory>
 #include <optional>
 #include <string>
