@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "friction_scene.hpp"
 
+#include <filesystem>
+#include <fstream>
+
 // Ellipsoids, cones, wedges, flat punches and tori as tools that press a block and move along it.
 
 namespace tools_test
@@ -117,6 +120,49 @@ TEST(Tools, OfOneShapeByTwoNamesAreOne)
               force({"Type=wedge", "Point={0.1, 0.02}", "Normal={0, 1}", "Slope=0.1", "Edge Radius=0.1"}));
   expect_same(force({"Type=flat punch", "Point={0.1, 0.02}", "Normal={0, 1}", "Radius=0.5", "Edge Radius=0.5"}),
               force({"Type=circle", "Centre={0.1, -0.48}", "Radius=0.5"})); // none of it is flat
+}
+
+/// Writes the torus of space_tools() as triangles, 2n around it and n around its tube.
+void write_torus(const std::string &file, const int n)
+{
+  std::ofstream out(file);
+  out.precision(12);
+  const auto vertex = [&](const int i, const int k) {
+    constexpr double pi = 3.14159265358979;
+    const double turn = pi * (i % (2 * n)) / n, up = 2 * pi * (k % n) / n, s = 0.4 + 0.3 * std::cos(up);
+    out << "vertex " << s * std::cos(turn) << " " << s * std::sin(turn) << " " << 0.3 * std::sin(up) << "\n";
+  };
+  out << "solid torus\n";
+  for (int i = 0; i < 2 * n; ++i)
+    for (int k = 0; k < n; ++k)
+      for (const int half : {0, 1}) {
+        out << "facet normal 0 0 0\nouter loop\n";
+        vertex(i, k);
+        vertex(i + 1, k + half);
+        vertex(i + 1 - half, k + 1);
+        out << "endloop\nendfacet\n";
+      }
+  out << "endsolid torus\n";
+}
+
+TEST(Tools, GivenByTheirTrianglesPressAsTheirShapesDo)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const std::string file =
+      (std::filesystem::current_path() / ("rpc_torus_" + std::to_string(comm->getSize()) + ".stl")).string();
+  if (comm->getRank() == 0) write_torus(file, 96); // alone: the others get it from there
+  comm->barrier();
+  const Assignments place =
+      joined(in_space, {"Contact->Yield Stress=80", "Contact->Friction Coefficient=0.2", "Steps->Times={1, 2}"});
+  const std::string origin = "{0.03 + 0.02*max(0, t - 1), 0.01, -0.28 - 0.02*max(0, 1 - t)}";
+  const Solution shape = pressed(joined(place, space_tools().back().placed(origin)));
+  const Solution mesh = pressed(joined(place, obstacle({"Type=surface mesh", "File=" + file, "Origin=" + origin})));
+  for (const int c : {0, 2}) {
+    EXPECT_GT(shape.contact.total.force[c], 0.1);
+    EXPECT_NEAR(mesh.contact.total.force[c] / shape.contact.total.force[c], 1, 0.02) << c;
+  }
+  comm->barrier();
+  if (comm->getRank() == 0) std::filesystem::remove(file);
 }
 
 TEST(Tools, ThatReachIntoTheBodyBetweenItsNodesAreSeen)

@@ -198,7 +198,8 @@ TEST(ObstacleOptions, RefuseWhatDoesNotFit)
     change(list);
     expect_error(ExitCode::bad_input, words, [&] { read(list); });
   };
-  refuse("one of none, plane, sphere, circle, cylinder, ellipsoid, ellipse, cone, wedge, flat punch, torus",
+  refuse("one of none, plane, sphere, circle, cylinder, ellipsoid, ellipse, cone, wedge, flat punch, torus, height "
+         "map, surface mesh",
          [](auto &list) { list.set("Type", "pyramid"); });
   refuse("must hold 2 numbers or expressions of t, got 3",
          [](auto &list) { list.set("Point", Numbers(Teuchos::tuple(0., 0., 0.))); });
@@ -218,10 +219,10 @@ TEST(ObstacleOptions, KindsDescribeThemselves)
 {
   const Teuchos::ParameterList valid = contact::valid_obstacle_parameters();
   const auto help = [&](const std::string &name) { return valid.getEntry(name).docString(); };
-  EXPECT_EQ(
-      help("Type"),
-      "Shape of the foundation's surface: `plane`, `sphere` (in 2D also named `circle`), in 3D `cylinder`, "
-      "`ellipsoid` (in 2D also named `ellipse`), `cone`, `wedge`, `flat punch`, in 3D `torus`, `height map`, or `none`: see Gap.");
+  EXPECT_EQ(help("Type"),
+            "Shape of the foundation's surface: `plane`, `sphere` (in 2D also named `circle`), in 3D `cylinder`, "
+            "`ellipsoid` (in 2D also named `ellipse`), `cone`, `wedge`, `flat punch`, in 3D `torus`, `height map`, in "
+            "3D `surface mesh`, or `none`: see Gap.");
   EXPECT_EQ(help("Point"), "plane: a point on it; cylinder: a point on its axis; cone: its tip; wedge: a point on its "
                            "edge; flat punch: the middle of its face "
                            "[m]. Numbers, or expressions of t.");

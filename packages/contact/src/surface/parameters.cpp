@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/surface/parameters.hpp"
 
+#include "rpc/contact/rounding.hpp"
 #include "rpc/core/error.hpp"
 
 #include <Teuchos_Array.hpp>
@@ -30,6 +31,23 @@ Point unit_vector_or(const Teuchos::ParameterList &list, const std::string &name
                      const std::string &path)
 {
   return list.get<Teuchos::Array<double>>(name).empty() ? fallback : unit_vector(list, name, dim, path);
+}
+
+std::array<Point, 3> orthonormal_axes(const Teuchos::ParameterList &list, const int dim, const std::string &path)
+{
+  const Point first = unit_vector_or(list, "Axis", {1, 0, 0}, dim, path);
+  Point second = {-first[1], first[0], 0};
+  RPC_REQUIRE(dim == 3 || list.get<Teuchos::Array<double>>("Second Axis").empty(),
+              "deck: \"" << path
+                         << "->Second Axis\" goes with a body in space; in the plane \"Axis\" tells both. Remove it.");
+  if (dim == 3) {
+    second = unit_vector_or(list, "Second Axis", {0, 1, 0}, dim, path);
+    const double cosine = inner(first, second);
+    RPC_REQUIRE(std::abs(cosine) <= Rounding::place,
+                "deck: \"" << path << "->Second Axis\" must be at right angles to \"" << path
+                           << "->Axis\", got a cosine of " << cosine << " between them");
+  }
+  return {first, second, cross(first, second)};
 }
 
 double positive_of(const Teuchos::ParameterList &list, const std::string &name, const std::string &path,

@@ -95,20 +95,7 @@ struct Ellipsoid {
       shape.semi_axes[c] = numbers[c];
     }
     if (dim == 2) shape.semi_axes[2] = std::max(numbers[0], numbers[1]);
-    const Point first = unit_vector_or(list, "Axis", {1, 0, 0}, dim, path);
-    Point second = {-first[1], first[0], 0};
-    RPC_REQUIRE(
-        dim == 3 || list.get<Teuchos::Array<double>>("Second Axis").empty(),
-        "deck: \"" << path
-                   << "->Second Axis\" goes with a body in space; in the plane \"Axis\" tells both. Remove it.");
-    if (dim == 3) {
-      second = unit_vector_or(list, "Second Axis", {0, 1, 0}, dim, path);
-      const double cosine = inner(first, second);
-      RPC_REQUIRE(std::abs(cosine) <= Rounding::place,
-                  "deck: \"" << path << "->Second Axis\" must be at right angles to \"" << path
-                             << "->Axis\", got a cosine of " << cosine << " between them");
-    }
-    shape.axes = {first, second, cross(first, second)};
+    shape.axes = orthonormal_axes(list, dim, path);
     shape.encloses = list.get<bool>("Encloses Body");
     return shape;
   }
