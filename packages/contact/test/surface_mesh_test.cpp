@@ -171,6 +171,7 @@ TEST(SurfaceMesh, MayEncloseTheBody)
   EXPECT_NEAR(direction_into(cavity, {0, 0, 0.3}).value()[2], 1, 1e-14);
   EXPECT_NEAR(distance_along(cavity, {0, 0, 0.3}, {0, 0, 1}).value(), 0.2, 1e-14);
   EXPECT_NEAR(distance_along(cavity, {0, 0, 0.6}, {0, 0, 1}).value(), -0.1, 1e-14);
+  EXPECT_FALSE(distance_along(cavity, {0, 0, 0.6}, {0, 0, -1})); // out of the foundation
 }
 
 /// Largest errors of distances and normals near the surface, and of distances along lines, against the torus itself.

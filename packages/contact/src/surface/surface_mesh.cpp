@@ -37,14 +37,14 @@ bool SurfaceMesh::lies_in(const Point &x) const
 
 std::optional<double> SurfaceMesh::distance_along(const Point &x, const Point &direction) const
 {
-  const bool inside = lies_in(x);
+  const auto crossings = surface->crossings(x, direction);
+  const bool is_behind = std::any_of(crossings.begin(), crossings.end(), [](const auto &each) { return each.g < 0; });
+  const bool inside = (is_behind || encloses) && lies_in(x); // the way to a place inside a body has crossed its surface
   const double rounding = 2 * Rounding::place * size();
   std::optional<double> found;
-  for (const auto &crossing : surface->crossings(x, direction)) {
-    if (!(crossing.descent > 0)) continue; // the line leaves the foundation
-    const double g = crossing.g;
-    if (inside ? g <= 0 && (!found || g > *found) : g * crossing.descent >= -rounding && (!found || g < *found))
-      found = g;
+  for (const auto &[g, descent] : crossings) {
+    if (!(descent > 0)) continue; // the line leaves the foundation
+    if (inside ? g <= 0 && (!found || g > *found) : g * descent >= -rounding && (!found || g < *found)) found = g;
   }
   return found;
 }
@@ -102,9 +102,11 @@ SurfaceMesh SurfaceMesh::read(const Teuchos::ParameterList &list, const int dim,
       for (int c = 0; c < 3; ++c) turned[c] += scale * x[k] * axes[k][c];
     x = turned;
   }
-  if (list.get<bool>("Encloses Body"))
+  const bool encloses = list.get<bool>("Encloses Body");
+  if (encloses)
     for (auto &corners : triangles.corners) std::swap(corners[1], corners[2]);
-  return {std::make_shared<const ClosedSurface>(std::move(triangles)), list.get<bool>("Smooth Normals"), name};
+  return {std::make_shared<const ClosedSurface>(std::move(triangles)), list.get<bool>("Smooth Normals"), encloses,
+          name};
 }
 
 } // namespace rpc::contact

@@ -24,6 +24,7 @@ struct SurfaceMesh {
 
   std::shared_ptr<const ClosedSurface> surface; ///< around the foundation; copies of an obstacle share it
   bool smooth = false;                          ///< its direction interpolates the normals of corners
+  bool encloses = false;                        ///< the foundation lies outside of it
   std::string file;                             ///< for users
 
   std::optional<Point> direction_into(const Point &x) const;
