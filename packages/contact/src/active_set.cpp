@@ -108,6 +108,7 @@ void choose_next_slip(const SmoothedPoints &s, const Vector &u, const ActiveSet 
   const auto direction = choice.direction, traction = choice.traction;
   const auto violated = choice.violation;
   const auto always = choice.always;
+  const double share = lag_rules.least_held;
   Kokkos::parallel_for(
       "rpc::contact::next_slip", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
         const ContactNodes &c = s.points;
@@ -119,8 +120,10 @@ void choose_next_slip(const SmoothedPoints &s, const Vector &u, const ActiveSet 
                                                            s.trial_traction(i, at, now.branch(i)));
         SlipBranch branch = next_slip(now.branch(i), turned, now.state(i), next(i), at.slip, row(traction, i),
                                       at.penetration, admissible(p(i), c.law(i)), own(i), bound, f);
-        always(i) = own(i) * prescribed_slip(at.slip, NormalAt{c, i}, FreeAt{c.friction, i}, c.dim).length() > bound;
-        if (branch.state == Slip::stick && always(i))
+        const double held = prescribed_slip(at.slip, NormalAt{c, i}, FreeAt{c.friction, i}, c.dim).length();
+        always(i) =
+            own(i) * held > bound && s.penalty(i) * held > share * friction_bound(admissible(p(i), c.law(i)), f);
+        if (branch.state == Slip::stick && own(i) * held > bound)
           branch = slip_instead(now.branch(i), turned, at.slip, row(traction, i),
                                 friction_bound(admissible(p(i), c.law(i)), f), c.dim);
         slips(i) = branch.state;

@@ -86,6 +86,10 @@ struct LagRules {
   Rule<int> mixing_depth{4, "lag.mixing_depth",
                          "earlier iterations that Anderson's acceleration of friction bounds combines [-]; off: 0",
                          "doc/theory.md, section 12"};
+  Rule<double> least_held{0.1, "lag.least_held",
+                          "penalty times prescribed slip of a point that cannot stick, over what friction bears there: "
+                          "above, its branch is without multiplier [-]; off: 1e9",
+                          "measurements.md: Friction: points that cannot stick"};
   Rule<int> most_sheets{64, "lag.most_sheets",
                         "sheets of dents of one foundation, one a step, before two are joined by interpolation [-]",
                         "doc/theory.md, section 11"};
