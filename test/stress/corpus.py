@@ -301,7 +301,7 @@ def scenes(source):
         texts[f"{mesh.replace('.', '_')}.yaml"] = [deck.replace("MESH", mesh).replace("MORE", more), data / mesh]
     for mesh, deck, more in (("square.med", SQUARE, ""), ("square.vtk", SQUARE, PLANES)):
         texts[f"{mesh.replace('.', '_')}.yaml"] = [deck.replace("MESH", mesh).replace("MORE", more), data / mesh]
-    for mesh, surfaces in (("cylinder.iges", (6, 5)), ("cylinder.brep", (3, 2))):
+    for mesh, surfaces in (("cylinder.iges", (6, 5)), ("cylinder.brep", (2, 3))):
         deck = replaced(PIN, ("Size: 6", "Size Factor: 3.5"), (r"\[2\]", f"[{surfaces[0]}]"), (r"\[3\]", f"[{surfaces[1]}]"))
         texts[f"{mesh.replace('.', '_')}.yaml"] = [deck.replace("MESH", mesh), data / mesh]
     texts["pin_step.yaml"] = [PIN.replace("MESH", "pin.step"), source / "doc/tutorial/pin.step"]
