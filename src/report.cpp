@@ -252,7 +252,6 @@ std::vector<Line> result_lines(const std::vector<Result> &results)
   return all;
 }
 
-/// Where error bars come from, or how to have them.
 /// What is certain of the error.
 void print_bound(std::ostream &out, const Scene &scene, const Solution &s)
 {
@@ -267,9 +266,15 @@ void print_bound(std::ostream &out, const Scene &scene, const Solution &s)
                  : "nothing: " + b.missing);
 }
 
+/// Where error bars come from, or how to have them.
 void print_accuracy(std::ostream &out, const Scene &scene, const Solution &s)
 {
   print_bound(out, scene, s);
+  const auto &conditions = scene.model.dirichlet;
+  if (std::any_of(conditions.begin(), conditions.end(), [](const auto &each) { return each.is_moved(); })) {
+    print_text(out, "errors", "not estimated where a force moves a side");
+    return;
+  }
   if (!s.estimate) {
     print_text(out, "errors",
                "not estimated: add \"Adapt->Target Relative Error\", such as 0.01, for error bars on meshes that are "

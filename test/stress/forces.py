@@ -62,7 +62,7 @@ def scene(seed, number):
         "Material": {"Young's Modulus": modulus, "Poisson's Ratio": rng.choice([0.0, 0.2, 0.3, 0.45])},
         "Contact": {"Side": "bottom", **foundation(rng, modulus, height, depth)},
         "Uzawa": {"Tolerance": TIGHT},
-        "Output": {"Exodus": False, "CSV": False},
+        "Output": {"Exodus": False},
     }
     if dim == 2:
         deck["Kinematics"] = kind

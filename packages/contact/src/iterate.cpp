@@ -178,7 +178,7 @@ Iterate::Iterate(const fem::ElasticProblem &elastic, ContactNodes points, RCP<Up
       own_(rpc::own_stiffness(hessian_->base(), points_)), coupled_(coupled_stiffness(hessian_->base(), points_)),
       functional_(stiffness_of(elastic, *hessian_), elastic.load, elastic.energy_offset,
                   smoothed_points(points_, own_)),
-      active_(no_active_set(points_))
+      tied_(elastic.stiffness_of_tied), active_(no_active_set(points_))
 {
   Vector applied(*elastic.applied_load, Teuchos::Copy), lifted(*elastic.load, Teuchos::Copy);
   fem::clear_prescribed(dirichlet_, applied);
@@ -220,6 +220,17 @@ GO Iterate::update_stiffness(const Vector &u)
 {
   const AddedBlocks added = added_blocks(functional_.points(), active_, u, spring_);
   return hessian_->set(points_, added.block, added.coupling);
+}
+
+void Iterate::apply_hessian(const Vector &d, Vector &Hd) const
+{
+  hessian_->apply(d, Hd);
+  if (tied_.is_null()) return;
+  Vector Kd(d.getMap()); // with prescribed unknowns in place of the tied ones
+  hessian_->apply_base(d, Kd);
+  Hd.update(-1., Kd, 1.);
+  tied_->apply(d, Kd);
+  Hd.update(1., Kd, 1.);
 }
 
 void Iterate::hold_by_contact()

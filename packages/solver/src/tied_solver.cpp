@@ -12,8 +12,13 @@ namespace rpc::solver
 namespace
 {
 
-constexpr double first_accuracy = 0.1; // of Y, as the residual over C, where the first solve asks for it
-constexpr double no_stiffness = 1e-13; // of D: what is less of D - C^T Y is none
+/// How well Y is known, as |C - H Y| / |C|. Solutions do not depend on it: they are held to what a solve may leave.
+struct Response {
+  static constexpr double first = 0.1;          ///< wanted at first
+  static constexpr double next = 1e-2;          ///< over the last one, where D - C^T Y is not known
+  static constexpr double told = 0.1;           ///< of D - C^T Y: what Y may leave of it where that counts as known
+  static constexpr double no_stiffness = 1e-13; ///< of D: less of D - C^T Y is rounding
+};
 
 /// x <- S^-1 b for a small S. @return whether S is regular
 bool solve_dense(std::vector<double> S, std::vector<double> &b)
@@ -80,25 +85,36 @@ LinearSolver::Result TiedSolver::solve(const Held &held, const Vector &b, Vector
   std::vector<double> given = means(tied, b), value;
   const auto from_x = stiffness_->forces_of(x);
   for (int j = 0; j < n; ++j) given[j] = given[j] * static_cast<double>(tied.count[j]) - from_x[j];
-  std::vector<double> accuracy(n, first_accuracy); // |C - H Y| / |C|, wanted
-  constexpr int most_rounds = 4;
-  for (int round = 0; round < most_rounds; ++round) {
-    std::vector<double> left(n);
+  std::vector<double> accuracy(n, Response::first); // |C - H Y| / |C|, wanted
+  constexpr int most_rounds = 8;
+  for (int round = 1; round <= most_rounds; ++round) {
+    std::vector<double> left(n), missed(n); // |C - H Y|, and what it makes of C^T Y
     for (int j = 0; j < n; ++j) {
       const double whole = stiffness_->force(j).norm2();
       auto residual = rest(j);
       left[j] = residual->norm2();
-      if (!(left[j] > accuracy[j] * whole)) continue;
-      Vector change(residual->getMap());
-      const auto solved = held(*residual, change, Accuracy(std::min(0.5, accuracy[j] * whole / left[j])));
-      result.iterations += solved.iterations;
-      if (solved.broken) return solved;
-      response_[j]->update(1., change, 1.);
-      left[j] = rest(j)->norm2();
+      if (left[j] > accuracy[j] * whole) {
+        Vector change(residual->getMap());
+        const auto solved = held(*residual, change, Accuracy(std::min(0.5, accuracy[j] * whole / left[j])));
+        result.iterations += solved.iterations;
+        if (solved.broken) return solved;
+        response_[j]->update(1., change, 1.);
+        residual = rest(j);
+        left[j] = residual->norm2();
+      }
+      missed[j] = std::abs(residual->dot(*response_[j]));
     }
     const std::vector<double> S = complement();
-    bool regular = true;
-    for (int j = 0; j < n; ++j) regular = regular && S[j * n + j] > no_stiffness * stiffness_->stiffness(j, j);
+    bool regular = true, enough = true;
+    for (int j = 0; j < n; ++j) {
+      const double own = S[j * n + j], whole = stiffness_->force(j).norm2();
+      if (missed[j] > Response::told * own && left[j] > Response::no_stiffness * whole) { // S is not known yet
+        enough = false;
+        accuracy[j] = std::min(accuracy[j], Response::next * left[j] / whole);
+      }
+      regular = regular && own > Response::no_stiffness * stiffness_->stiffness(j, j);
+    }
+    if (!enough && round < most_rounds) continue;
     value = given;
     if (!regular || !solve_dense(S, value)) {
       result.converged = false;
@@ -106,7 +122,6 @@ LinearSolver::Result TiedSolver::solve(const Held &held, const Vector &b, Vector
       result.reason = "nothing holds a side that a force moves: no contact point of the active set is closed";
       return result;
     }
-    bool enough = true;
     for (int j = 0; j < n; ++j) {
       const double most = target / (2 * n * std::max(std::abs(value[j]), std::numeric_limits<double>::min()));
       enough = enough && left[j] <= most;
@@ -116,8 +131,39 @@ LinearSolver::Result TiedSolver::solve(const Held &held, const Vector &b, Vector
   }
   for (int j = 0; j < n; ++j) x.update(-value[j], *response_[j], 1.);
   set_members(tied, value, x);
+  if (H_->is_symmetric()) balance(b, x);
   if (wanted.error > 0) result.energy = b.dot(x);
   return result;
+}
+
+/// A step along W = (-Y, 1), in which the sides move as one and the body follows: the softest direction there may be, in which x has an error
+/// of many times its residual.
+void TiedSolver::balance(const Vector &b, Vector &x) const
+{
+  const TiedUnknowns &tied = stiffness_->tied();
+  const int n = tied.size();
+  std::vector<double> value = means(tied, x), given = means(tied, b), S = complement();
+  set_members(tied, std::vector<double>(n, 0.), x);
+  Vector left = without_members(b);
+  H_->apply(x, left, Teuchos::NO_TRANS, -1., 1.);
+  const auto forces = stiffness_->forces_of(x);
+  for (int k = 0; k < n; ++k) {
+    left.update(-value[k], stiffness_->force(k), 1.);
+    const auto residual = rest(k);
+    for (int j = 0; j < n; ++j) S[k * n + j] -= response_[j]->dot(*residual);
+  }
+  std::vector<double> step;
+  for (int j = 0; j < n; ++j) {
+    double force = given[j] * static_cast<double>(tied.count[j]) - forces[j];
+    for (int k = 0; k < n; ++k) force -= stiffness_->stiffness(j, k) * value[k];
+    step.push_back(force - response_[j]->dot(left));
+  }
+  if (solve_dense(S, step))
+    for (int j = 0; j < n; ++j) {
+      value[j] += step[j];
+      x.update(-step[j], *response_[j], 1.);
+    }
+  set_members(tied, value, x);
 }
 
 double TiedSolver::inverse_energy(const std::function<double(const Vector &)> &held, const Vector &F) const

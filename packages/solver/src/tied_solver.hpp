@@ -32,6 +32,7 @@ private:
   std::vector<double> complement() const;
   RCP<Vector> rest(int group) const;
   Vector without_members(const Vector &b) const;
+  void balance(const Vector &b, Vector &x) const;
 
   RCP<const TiedStiffness> stiffness_;
   RCP<const UpdatedOperator> H_;

@@ -55,7 +55,7 @@ bool ActiveSetLoop::solve_interior(solver::NewtonContext &context, const Vector 
   // Brings d to -H^-1 F, by a solve for what it lacks; false where that fails.
   const auto improve = [&](const Vector &F, Vector &d) {
     Vector lacking(u.getMap());
-    iterate_.hessian()->apply(d, lacking);
+    iterate_.apply_hessian(d, lacking);
     lacking.update(1., F, 1.);
     const double wanted = path_rules.forcing * F.norm2(), missing = lacking.norm2();
     if (missing <= wanted) return true;

@@ -41,6 +41,8 @@ public:
   /// Of the displacement from 0.
   double size(const Vector &u) const override;
   const RCP<UpdatedOperator> &hessian() const override { return hessian_; }
+  /// Hd <- H d, with what hessian() lacks of sides that a force moves.                                              (2.9a)
+  void apply_hessian(const Vector &d, Vector &Hd) const;
   /// Takes the states at u for the active set, and brings hessian() to it: that is H(u).
   GO update_hessian(const Vector &u) override;
   /// Weakens the springs of hold_by_contact(), if there are any, from the next update of hessian() on, after a step longer
@@ -158,6 +160,7 @@ private:
   double weight_ = 0;              // of the free points: their area [m^2], in 2D per m
   double start_pressure_ = 0;      // mean of the multipliers that a start gave [Pa]
   double pressure_bound_ = 0;      // pressure that the load will hardly reach anywhere [Pa]
+  RCP<const TiedStiffness> tied_;  // null: no force moves a side
   ActiveSet active_;               // that hessian() belongs to
   double spring_ = 0;              // weak springs at nodes that are not closed, in units of the points' scaling
   bool multipliers_given_ = false; // by a start
