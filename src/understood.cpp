@@ -179,7 +179,7 @@ void print_loads(Block &block, const Scene &scene, const fem::Discretization &d)
     tell("body force", changes(force),
          [&](const analysis::Model &model) { return fem::resultant(d, model.body_force); });
   else if (scene.model.tractions.empty())
-    block.line("loads", "none but prescribed displacements");
+    block.line("loads", "none but what \"Dirichlet\" prescribes");
 }
 
 std::string law_text(const contact::ContactOptions &side, const UnitNames &units)
