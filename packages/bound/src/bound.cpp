@@ -291,15 +291,19 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   const Tractions t = equilibrated(in, all, galerkin.Q, mean_moments(in, *galerkin.u));
   const double lift = norm_of_lifted_loads(in, lifted_loads(d.mesh->element), boundary.tractions.load);
   const DeviceView<double *> of_cell("rpc::bound::of_cell", in.num_cells());
-  Descent descent(in, all, cell_forms(in, *u), t);
-  for (int step = 0; step <= steps; ++step) {
-    if (step > 0) descent.step();
-    const StressDifference left = stress_difference(in, t, *u, of_cell);
-    const double norm = std::sqrt(2 * left.energy) + lift;
-    bound.steps.push_back(norm * norm / 2 + gap);
-    bound.imbalance = left.force > 0 ? left.imbalance / left.force : 0;
+  const CellForms forms = cell_forms(in, *u);
+  Descent descent(in, all, forms, t);
+  std::vector<double> falls;
+  for (int step = 0; step < steps; ++step) falls.push_back(descent.step());
+  const StressDifference left = stress_difference(in, t, *u, of_cell);
+  bound.imbalance = left.force > 0 ? left.imbalance / left.force : 0;
+  double energy = left.energy;
+  for (int step = steps; step >= 0; --step) {
+    const double norm = std::sqrt(2 * energy) + lift;
+    bound.steps.insert(bound.steps.begin(), norm * norm / 2 + gap);
+    if (step > 0) energy += falls[step - 1];
   }
-  const double best = *std::min_element(bound.steps.begin(), bound.steps.end());
+  const double best = bound.steps.back();
   bound.lower = bound.upper - best;
   bound.energy_norm = std::sqrt(2 * best) + bound.moved;
   if (!(bound.imbalance <= 1e-8))

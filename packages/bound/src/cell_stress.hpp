@@ -72,7 +72,8 @@ struct CellEnergy {
   double S[3][3];            ///< compliance of images, by reference area
   double force_stress[2][3]; ///< image of the stress that takes up the body force: coefficients of X_l
 
-  KOKKOS_INLINE_FUNCTION CellEnergy(const CellInput &in, const AffineCell &cell, const LO c)
+  /// @param first  rows of A before it are left out
+  KOKKOS_INLINE_FUNCTION CellEnergy(const CellInput &in, const AffineCell &cell, const LO c, const int first)
   {
     double C[3][3], T[3][3];
     compliance(in.lame(in.block(c), 0), in.lame(in.block(c), 1), C);
@@ -85,11 +86,11 @@ struct CellEnergy {
       }
     const double s[6] = {S[0][0], S[1][1], S[2][2], S[0][1], S[0][2], S[1][2]};
     const int n = in.reference.columns();
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j) {
-        A[i][j] = 0;
-        for (int p = 0; p < 6; ++p) A[i][j] += s[p] * in.reference.energy(p, i, j);
-      }
+    for (int i = first; i < n; ++i)
+      for (int j = 0; j < n; ++j) A[i][j] = 0;
+    for (int p = 0; p < 6; ++p)
+      for (int i = first; i < n; ++i)
+        for (int j = 0; j < n; ++j) A[i][j] += s[p] * in.reference.energy(p, i, j);
     const auto &G = cell.inverse;
     for (int l = 0; l < 2; ++l) {
       const double a = -in.force[0] * cell.F[0][l], b = -in.force[1] * cell.F[1][l], d = cell.determinant;
@@ -97,8 +98,10 @@ struct CellEnergy {
       force_stress[l][1] = d * (G[1][0] * G[1][0] * a + G[1][1] * G[1][1] * b);
       force_stress[l][2] = d * (G[0][0] * G[1][0] * a + G[0][1] * G[1][1] * b);
     }
+    const bool no_force = in.force[0] == 0 && in.force[1] == 0;
     for (int i = 0; i < n; ++i) {
       of_force[i] = 0;
+      if (no_force || i < first) continue;
       for (int k = 0; k < 3; ++k)
         for (int l = 0; l < 2; ++l)
           for (int m = 0; m < 3; ++m) of_force[i] += in.reference.moment(k, l, i) * S[k][m] * force_stress[l][m];

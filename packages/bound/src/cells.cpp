@@ -23,8 +23,9 @@ struct MakeForms {
     const ReferenceStress &r = in.reference;
     const int k = r.degree, nt = r.tractions, n = r.columns(), sides = r.sides;
     const AffineCell cell(in, c);
-    CellEnergy e(in, cell, c);
+    CellEnergy e(in, cell, c, 0);
     e.factor_inner(nt, n);
+    double of_tractions[ReferenceStress::most_tractions][ReferenceStress::most_tractions];
     // Rows of A and the force's part without inner stresses: those are at their best.
     double x[ReferenceStress::most_columns];
     for (int j = 0; j <= nt; ++j) { // the last column is that of the force
@@ -34,28 +35,27 @@ struct MakeForms {
         double sum = 0;
         for (int z = nt; z < n; ++z) sum += e.A[i][z] * x[z];
         if (j < nt)
-          out.A(c, i, j) = e.A[i][j] - sum;
+          of_tractions[i][j] = e.A[i][j] - sum;
         else
           e.of_force[i] -= sum;
       }
     }
     // From reference tractions to those of the facets: t^ = F^-1 t, with signs.
     double tau[ReferenceStress::most_tractions];
+    const bool loaded = in.force[0] != 0 || in.force[1] != 0;
     tractions_of_force(in, cell, c, tau);
     const auto &G = cell.inverse;
+    double factor[ReferenceStress::most_tractions / 2];
+    for (int p = 0; p < nt / 2; ++p) factor[p] = side_factor(in.facets.sign(c, p / (k + 1)), p % (k + 1));
     for (int p = 0; p < nt / 2; ++p)
       for (int q = 0; q < nt / 2; ++q) {
-        double block[2][2], turned[2][2] = {};
-        for (int i = 0; i < 2; ++i)
-          for (int j = 0; j < 2; ++j) block[i][j] = out.A(c, 2 * p + i, 2 * q + j);
+        double half[2][2]; // A G
         for (int i = 0; i < 2; ++i)
           for (int j = 0; j < 2; ++j)
-            for (int a = 0; a < 2; ++a)
-              for (int b = 0; b < 2; ++b) turned[i][j] += G[a][i] * block[a][b] * G[b][j];
-        const double sign = side_factor(in.facets.sign(c, p / (k + 1)), p % (k + 1)) *
-                            side_factor(in.facets.sign(c, q / (k + 1)), q % (k + 1));
+            half[i][j] = of_tractions[2 * p + i][2 * q] * G[0][j] + of_tractions[2 * p + i][2 * q + 1] * G[1][j];
         for (int i = 0; i < 2; ++i)
-          for (int j = 0; j < 2; ++j) out.A(c, 2 * p + i, 2 * q + j) = sign * turned[i][j];
+          for (int j = 0; j < 2; ++j)
+            out.A(c, 2 * p + i, 2 * q + j) = factor[p] * factor[q] * (G[0][i] * half[0][j] + G[1][i] * half[1][j]);
       }
     for (int s = 0; s < sides; ++s) {
       const LO a = in.cells(c, s), b = in.cells(c, (s + 1) % sides), m = order == 2 ? in.cells(c, sides + s) : a;
@@ -66,8 +66,7 @@ struct MakeForms {
           double sum = G[0][i] * e.of_force[p] + G[1][i] * e.of_force[p + 1];
           sum -= legendre_moment(order, j, u(dof(2, a, i)), u(dof(2, b, i)), u(dof(2, m, i)));
           sum *= sign;
-          for (int q = 0; q < nt; ++q)
-            sum -= out.A(c, p + i, q) * side_factor(in.facets.sign(c, q / 2 / (k + 1)), q / 2 % (k + 1)) * tau[q];
+          for (int q = 0; q < nt && loaded; ++q) sum -= out.A(c, p + i, q) * factor[q / 2] * tau[q];
           out.b(c, p + i) = sum;
         }
       }
@@ -139,7 +138,7 @@ struct Difference {
     const ReferenceStress &r = in.reference;
     const int k = r.degree, nt = r.tractions, n = r.columns(), nm = r.monomials;
     const AffineCell cell(in, c);
-    CellEnergy e(in, cell, c);
+    CellEnergy e(in, cell, c, nt);
     double x[ReferenceStress::most_columns], tau[ReferenceStress::most_tractions];
     read_tractions(in, t, c, x);
     for (int q = 0; q < nt; ++q) x[q] *= side_factor(in.facets.sign(c, q / 2 / (k + 1)), q / 2 % (k + 1));
@@ -153,7 +152,7 @@ struct Difference {
     }
     for (int z = nt; z < n; ++z) {
       x[z] = -e.of_force[z];
-      for (int i = 0; i < nt; ++i) x[z] -= e.A[i][z] * x[i];
+      for (int i = 0; i < nt; ++i) x[z] -= e.A[z][i] * x[i];
     }
     e.factor_inner(nt, n);
     e.solve_inner(nt, n, x);

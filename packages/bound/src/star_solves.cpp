@@ -131,9 +131,11 @@ struct FactorStars {
               Am[p] += forms.A(c, ordinal[s] * per_facet + p, ordinal[r] * per_facet + q) * M[r][q][b];
           }
           for (int a = 0; a < both; ++a) {
+            const int row = modes.place(spoke[s], a), column = modes.place(spoke[r], b);
+            if (row < column) continue; // the factor is made of the lower part
             double sum = 0;
             for (int p = 0; p < per_facet; ++p) sum += M[s][p][a] * Am[p];
-            H[modes.place(spoke[s], a) * n + modes.place(spoke[r], b)] += sum;
+            H[row * n + column] += sum;
           }
         }
   }
