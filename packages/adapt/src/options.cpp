@@ -44,7 +44,7 @@ Teuchos::ParameterList valid_adapt_parameters()
       "An interval for the energy, and a bound of the error in the energy norm: `estimated` by the recovered stress, "
       "which may be too small, or `guaranteed`. Guaranteed are plane bodies of triangles or parallelograms that "
       "displacements hold, on one rank, without load steps, friction, hardening and springs, on straight contact "
-      "sides; for other decks it is refused. It takes about as long as two elastic solves.");
+      "sides; for other decks it is refused. It takes about as long as two runs without contact.");
   valid.set("Exact Energy", std::numeric_limits<double>::quiet_NaN(),
             "J of the exact solution [J], in 2D per m, to compare the estimate with; nan, which is to leave it out: "
             "unknown.");

@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Random plane scenes with a guaranteed bound: it holds the energy of a much finer solution, and is not much larger than the error.
+
+    python3 bounds.py --rpc=build/rpc [--seed=1] [--scenes=100] [--only=K] [--corners=1] [--jobs=2] [--keep=DIR]
+
+Scene K comes from the seed and K alone: a rectangle, a parallelogram or an L of P1, P2, Q1 or Q2, of triangles also with distorted cells, of one or two
+materials, in plane strain or stress, held at one or two sides or pressed down by one, with smooth loads on sides and maybe a force per volume, on a
+foundation with a finite or an infinite yield stress and an even or a tilted gap. The reference is the same scene on cells of P2 half as
+long that are then adapted: J(u) is its upper bound less half of the square of its estimated error. A scene fails where the lower bound lies above the upper one of the
+reference, or a run fails. Told are the effectivities sqrt((J(u^) - lower) / (J(u^) - J(u))): the smallest, the median, the largest, and how many
+exceed LARGE. With --corners=1 loads do not end at the corners: stresses jump with the direction there, which stresses with prescribed tractions resolve
+worse than displacements. The exit code is 1 if a scene failed, an effectivity is below 1 by more than its reference may be off, or the median exceeds LARGE.
+"""
+import concurrent.futures
+import dataclasses
+import json
+import math
+import pathlib
+import random
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+
+import adaptive
+import plane
+import scenes
+from generate import log_uniform
+
+LARGE = 1.3
+FINER = 2
+MOST_DOFS = 30000  # of references
+TARGET = 0.003
+REFUSED = 5  # exit code: the scene has no solution
+ROUNDING = 1e-9
+KEPT = 0.03  # of the squared error: what a reference may be off
+
+
+def shape(rng):
+    """(base coordinates of the unit square, which cells of nx x ny are kept, whether its sides are parallel)"""
+    width, height = rng.uniform(0.7, 3), rng.uniform(0.6, 1.5)
+    kind = rng.choice(["rectangle", "rectangle", "parallelogram", "ell"])
+    shear = rng.uniform(-0.4, 0.4) if kind == "parallelogram" else 0.0
+    nx, ny = rng.randint(8, 20), rng.randint(6, 12)
+    cut_x, cut_y = (rng.randint(1, nx - 2), rng.randint(1, ny - 2)) if kind == "ell" else (0, 0)
+    return lambda s, t: (width * s + shear * height * t, height * t), nx, ny, cut_x, cut_y
+
+
+def mesh_of(rng, element, place, nx, ny, cut_x, cut_y, halves):
+    """A Grid: an L lacks its upper right corner, two blocks lie beside each other."""
+    distort = None
+    if element[0] == "P" and rng.random() < 0.6:
+        (x0, y0), (x1, y1) = place(0, 0), place(1 / nx, 1 / ny)
+        size = 0.25 * min(abs(x1 - x0), abs(y1 - y0))
+        moves = {}
+        distort = lambda i, j: moves.setdefault((i, j), (rng.uniform(-size, size), rng.uniform(-size, size)))
+    # No vertex on the line between two blocks may move, nor the edge of the corner that is cut out.
+    border = nx // 2 if halves else None
+    shift = distort and (lambda i, j: (0.0, 0.0) if i == border or (i == nx - cut_x and cut_x) or (j == ny - cut_y and cut_y) else distort(i, j))
+    return grid_of(element, place, nx, ny, cut_x, cut_y, halves, 1, shift)
+
+
+def grid_of(element, place, nx, ny, cut_x, cut_y, halves, finer, shift=None):
+    grid = plane.Grid(finer * nx, finer * ny, element, place,
+                      keep=lambda i, j: not (cut_x and i >= finer * (nx - cut_x) and j >= finer * (ny - cut_y)),
+                      block=lambda i, j: "soft" if halves and i >= finer * (nx // 2) else "body", distort=shift,
+                      diagonals=lambda i, j: (i + j) % 2 == 0)
+    for i, j in grid.cells() if element == "P2" else []:  # the middle of a cell is that of its diagonal: triangles are straight
+        a, b = ((2, 0), (0, 2)) if (i + j) % 2 == 0 else ((0, 0), (2, 2))
+        ends = [grid.nodes[grid.node(2 * i + c[0], 2 * j + c[1])] for c in (a, b)]
+        grid.nodes[grid.node(2 * i + 1, 2 * j + 1)] = tuple((ends[0][d] + ends[1][d]) / 2 for d in (0, 1))
+    return grid
+
+
+def loads(rng, size, bump):
+    """Smooth tractions. Times a bump they end at the corners, where stresses would jump with the direction otherwise."""
+    wave = lambda: rng.choice(["", f"*sin({rng.uniform(0.5, 3)!r}*x + {rng.uniform(0, 3)!r})", f"*(1 + {rng.uniform(-1, 1)!r}*x)", "*x*x"])
+    return {"X": f"{size * rng.uniform(-0.4, 0.4)!r}{wave()}{bump}", "Y": f"{-size * rng.uniform(0.3, 1)!r}{wave()}{bump}"}
+
+
+def deck(rng, ends, jumps):
+    """@param ends  coordinates x of the top's ends, y of those of the right side"""
+    bumps = {side: "" if jumps else f"*{4 / (b - a) ** 2!r}*({c} - {a!r})*({b!r} - {c})" for side, (c, a, b) in ends.items()}
+    young, load = 1000.0, log_uniform(rng, -0.5, 1)
+    lists = {"Mesh": {"Type": "gmsh", "File": "body.msh"}, "Kinematics": rng.choice(["plane strain", "plane strain", "plane stress"]),
+             "Material": {"Young's Modulus": young, "Poisson's Ratio": rng.uniform(0, 0.39)}}
+    halves = rng.random() < 0.25
+    if halves:
+        lists["Material"]["Blocks"] = {"soft": {"Young's Modulus": young * log_uniform(rng, -1, 1), "Poisson's Ratio": rng.uniform(0, 0.39)}}
+    held = rng.choice(["left", "both", "top", "rollers"])
+    none = {"X": "0", "Y": "0"}
+    down = repr(-load / young * rng.uniform(0.3, 1.5))
+    lists["Dirichlet"] = {"left": {"left": none}, "both": {"left": none, "right": none}, "top": {"top": {"X": "0", "Y": down}},
+                          "rollers": {"left": {"X": "0"}, "top": {"Y": down}}}[held]
+    lists["Traction"] = {side: loads(rng, load, bumps[side]) for side in ("top", "right") if side not in lists["Dirichlet"] and (side == "top" or rng.random() < 0.4)}
+    if not lists["Traction"]:
+        del lists["Traction"]
+    if rng.random() < 0.4:
+        lists["Body Force"] = {"X": repr(load * rng.uniform(-0.5, 0.5)), "Y": repr(-load * rng.uniform(0, 1))}
+    lists["Contact"] = {"Side": "bottom"}
+    if rng.random() < 0.6:
+        lists["Contact"]["Yield Stress"] = repr(load * log_uniform(rng, -0.7, 0.7))
+    depth = load / young
+    even = rng.uniform(0, 1.5) if rng.random() < 0.5 else 0.0
+    lists["Contact"]["Gap"] = repr(depth * even) if rng.random() < 0.6 else f"{depth * even!r} + {depth * rng.uniform(0, 1.5)!r}*x"
+    lists["Adapt"] = {"Error Bound": "guaranteed"}
+    return lists, halves
+
+
+@dataclasses.dataclass
+class Outcome:
+    number: int
+    element: str = ""
+    effectivity: float = math.nan
+    uncertain: float = 0.0  # of the effectivity, by what the reference is off
+    first: float = math.nan  # without steps of conjugate gradients
+    complaint: str = ""
+    refused: bool = False
+    exact: bool = False  # the mesh represents the solution
+
+
+def run(options, folder, output, *more):
+    command = [options.rpc, "--input=scene.yaml", f"--output={output}", "--set=Output->Exodus=false", *more]
+    result = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=600, stdin=subprocess.DEVNULL)
+    summary = folder / output / "scene.json"
+    return result, json.loads(summary.read_text()) if summary.exists() else None
+
+
+def judge(options, number):
+    rng = random.Random(f"{options.seed}/bounds/{number}")
+    element = ["P1", "P2", "Q1", "Q2"][number % 4]
+    place, nx, ny, cut_x, cut_y = shape(rng)
+    ends = {"top": ("x", place(0, 1)[0], place(1 - cut_x / nx, 1)[0]), "right": ("y", 0.0, place(1, 1 - cut_y / ny)[1])}
+    lists, halves = deck(rng, ends, options.corners)
+    outcome = Outcome(number, element)
+    folder = pathlib.Path(tempfile.mkdtemp(prefix=f"rpc_bounds_{number}_"))
+    try:
+        (folder / "scene.yaml").write_text(adaptive.yaml({"scene": lists}))
+        found = []
+        for output, of, finer, more in (("out", element, 1, []), ("fine", "P2", FINER, [f"--set=Adapt->Target Relative Error={TARGET}", f"--set=Adapt->Max Dofs={MOST_DOFS}"])):
+            if finer == 1:
+                grid = mesh_of(rng, of, place, nx, ny, cut_x, cut_y, halves)
+            else:
+                grid = grid_of(of, place, nx, ny, cut_x, cut_y, halves, finer)
+            (folder / "body.msh").write_text(plane.Body(grid).msh(1.0))
+            result, summary = run(options, folder, output, *more)
+            if result.returncode == REFUSED:
+                outcome.refused = True
+                return outcome
+            if summary is None or not summary["converged"] or summary["error_bound"]["reason"]:
+                outcome.complaint = f"{output}: exit {result.returncode}: {result.stderr.strip()[-300:]} {(summary or {}).get('error_bound', {}).get('reason')}"
+                return outcome
+            found.append(summary)
+        compare(outcome, *found)
+    except Exception as error:  # a run that took too long, a file that is no JSON
+        outcome.complaint = f"{type(error).__name__}: {error}"[:300]
+    finally:
+        if options.keep:
+            shutil.copytree(folder, pathlib.Path(options.keep) / f"bounds_{options.seed}_{number:04d}", dirs_exist_ok=True)
+        shutil.rmtree(folder, ignore_errors=True)
+    return outcome
+
+
+def compare(outcome, summary, reference):
+    low, high = summary["error_bound"]["energy_J"]
+    low_there, high_there = reference["error_bound"]["energy_J"]
+    left = reference["error_estimate"]["energy_norm"] ** 2 / 2
+    true = high - (high_there - left)
+    if true < ROUNDING * (abs(high) + abs(low)):
+        outcome.exact = True
+        return
+    outcome.effectivity = math.sqrt((high - low) / true)
+    outcome.first = math.sqrt(summary["error_bound"]["by_step"][0] / true)
+    outcome.uncertain = outcome.effectivity * left / (2 * true) + KEPT
+    slack = 1e-12 * (abs(high) + abs(low))
+    if low > high_there + slack or low_there > high + slack:
+        outcome.complaint = f"[{low!r}, {high!r}] and [{low_there!r}, {high_there!r}] do not meet"
+
+
+def main():
+    options = scenes.arguments(__doc__, 100, ("--corners", {"type": int, "default": 0}))
+    numbers = [options.only] if options.only is not None else range(options.scenes)
+    with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
+        outcomes = list(pool.map(lambda number: judge(options, number), numbers))
+    for o in outcomes:
+        if o.complaint:
+            print(f"FAILED {o.number} ({o.element}): {o.complaint}")
+        elif (o.effectivity > LARGE or o.effectivity < 1):
+            print(f"  {o.number} ({o.element}): effectivity {o.effectivity:.3f} after {o.first:.2f}, the reference may be off by {o.uncertain:.3f}")
+    known = [o for o in outcomes if not (o.complaint or o.refused or o.exact)]
+    below = [o for o in known if o.effectivity < 1 - o.uncertain]
+    print(f"{len(outcomes)} scenes, seed {options.seed}: {sum(bool(o.complaint) for o in outcomes)} failed, {sum(o.refused for o in outcomes)} without a solution, {sum(o.exact for o in outcomes)} exact")
+    for element in ["P1", "P2", "Q1", "Q2", None]:
+        of = sorted(o.effectivity for o in known if element in (None, o.element))
+        if of:
+            print(f"  {element or 'all':4} effectivity {of[0]:.3f} to {of[-1]:.3f}, median {statistics.median(of):.3f}, above {LARGE}: {sum(e > LARGE for e in of)} of {len(of)}")
+    too_large = known and statistics.median(o.effectivity for o in known) > LARGE
+    return 1 if any(o.complaint for o in outcomes) or below or too_large else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
