@@ -112,6 +112,21 @@ TEST(ErrorBound, CountsBodyForcesAndTiltedGaps)
   }
 }
 
+TEST(ErrorBound, HoldsTheEnergyUnderLoadsThatJumpOrWaveBetweenCells)
+{
+  // Cells of (0.25 m)^2 end where the load jumps.
+  for (const std::string load : {"x > 1.25 ? -10 : 0", "-10*sin(3*x)"}) {
+    SCOPED_TRACE(load);
+    const auto of_cells = [&](const std::string &element, const std::string &cells) {
+      return bounded(input + "beam.xml",
+                     {"Mesh->Element=" + element, "Mesh->Cells=" + cells, "Traction->top->Y=" + load});
+    };
+    const Solution coarse = of_cells("P1", "{20, 4}"), fine = of_cells("P2", "{80, 16}");
+    EXPECT_LE(coarse.bound->lower, fine.bound->upper);
+    EXPECT_GE(coarse.bound->upper, fine.bound->lower);
+  }
+}
+
 TEST(ErrorBound, IsRefusedWithWhatIsCovered)
 {
   const auto refused = [](const std::string &deck, const std::vector<std::string> &assignments,
@@ -134,7 +149,10 @@ TEST(ErrorBound, IsRefusedWithWhatIsCovered)
   refused("beam.xml", {small, "Contact->Friction Coefficient=0.3"}, "has friction");
   refused("beam.xml", {small, "Contact->Yield Stress=16 + x"}, "Yield Stress");
   refused("beam.xml", {small, "Body Force->Y=-x"}, "Body Force");
+  refused("beam.xml", {small, "Traction->top->Y=x > 1.1 ? -10 : 0"}, "smooth within each cell");
+  refused("beam.xml", {small, "Traction->top->Y=abs(x - 1.005) < 0.01 ? -1000 : 0"}, "smooth within each cell");
   refused("beam.xml", {small, "Dirichlet->left->Y=1e-3*y"}, "Dirichlet->left");
+  refused("beam.xml", {small, "Dirichlet->top->Force Y=-5"}, "a force moves the side of \"Dirichlet->top\"");
   refused("beam.xml", {small, "Contact->Gap=1e-3*x^4"}, "another than between its nodes");
   refused("beam.xml", {small, "Material->Poisson's Ratio=0.45"}, "projected dilatation");
   refused("track.xml", {}, "Steps");

@@ -201,9 +201,11 @@ void require_covered(const analysis::Task &task)
   require_of_deck(task.model.kinematics != fem::Kinematics::axisymmetric, "the body is axisymmetric");
   for (int i = 0; i < 3; ++i)
     require_of_deck(task.model.body_force[i].is_constant(), "\"Body Force\" depends on the place");
-  for (const auto &condition : task.model.dirichlet)
+  for (const auto &condition : task.model.dirichlet) {
+    require_of_deck(!condition.is_moved(), "a force moves the side of \"Dirichlet->" + condition.name + "\"");
     for (const auto &u : condition.displacement)
       require_of_deck(!u || u->is_constant(), "\"Dirichlet->" + condition.name + "\" depends on the place");
+  }
   for (std::size_t k = 0; k < task.model.contact.size(); ++k) {
     const auto &c = task.model.contact[k];
     const auto field = [&](const int p) { return c.*contact::law_parameters[p].field; };

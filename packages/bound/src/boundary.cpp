@@ -75,6 +75,43 @@ struct OnHost {
   }
 };
 
+/// Whether the polynomials that stand for a traction on the facets of a side are that traction, between their points too. What they lack, such
+/// as half of a jump within a facet, no stress would balance, and J of the exact solution could lie below its bound.
+/// @param coefficients  (facets of the mesh, degree, component) times lengths [N]
+void require_represented_load(const OnHost &host, const fem::VectorField &traction, const std::string &name,
+                              const std::vector<LO> &facets, const HostView<double ***> &coefficients)
+{
+  constexpr int parts = 4;         // of a facet, of points_of_fields each
+  constexpr double allowed = 1e-3; // of the largest traction of the entry: smooth loads stay below it on coarse cells
+  const Gauss points = gauss(OnHost::points_of_fields);
+  Gauss rule;
+  for (int part = 0; part < parts; ++part)
+    for (const double s : points.point) rule.point.push_back((part + s) / parts);
+  const std::size_t n = rule.point.size();
+  const HostPoints x = host.points(facets, rule);
+  double largest = 0, worst = 0;
+  std::size_t at = 0;
+  for (int i = 0; i < 2; ++i) {
+    const auto t = evaluate(traction[i], x, "Traction->" + name, host.mesh.comm());
+    for (std::size_t e = 0; e < facets.size(); ++e)
+      for (std::size_t q = 0; q < n; ++q) {
+        double polynomial = 0;
+        for (int j = 0; j <= ReferenceStress::degree_of_loads; ++j)
+          polynomial += coefficients(facets[e], j, i) / host.length_of(facets[e]) * legendre(j, rule.point[q]);
+        const double off = std::abs(t(e * n + q) - polynomial);
+        largest = std::max(largest, std::abs(t(e * n + q)));
+        if (off > worst) {
+          worst = off;
+          at = e * n + q;
+        }
+      }
+  }
+  RPC_REQUIRE(worst <= allowed * largest,
+              "deck: \"Adapt->Error Bound\" = guaranteed covers loads that are smooth within each cell; \"Traction->"
+                  << name << "\" is not, at (" << x(at, 0) << ", " << x(at, 1)
+                  << "). Let cells end where it jumps or bends, take smaller ones, or write \"estimated\"");
+}
+
 /// load(f, j, i) += the coefficients of the tractions on a side.
 void add_load(const analysis::Problem &problem, const OnHost &host, const fem::TractionLoad &load,
               const HostView<double ***> &sum)
@@ -86,14 +123,18 @@ void add_load(const analysis::Problem &problem, const OnHost &host, const fem::T
   constexpr int num_points = OnHost::points_of_fields;
   const Gauss rule = gauss(num_points);
   const HostPoints x = host.points(facets, rule);
+  const HostView<double ***> own("rpc::bound::load_of_entry", sum.extent(0), sum.extent(1), 2);
   for (int i = 0; i < 2; ++i) {
     const auto t = evaluate(traction[i], x, "Traction->" + load.name, host.mesh.comm());
     for (std::size_t e = 0; e < facets.size(); ++e)
-      for (int j = 0; j <= ReferenceStress::degree_of_loads; ++j)
+      for (int j = 0; j <= ReferenceStress::degree_of_loads; ++j) {
         for (int q = 0; q < num_points; ++q)
-          sum(facets[e], j, i) += (2 * j + 1) * rule.weight[q] * legendre(j, rule.point[q]) * t(e * num_points + q) *
+          own(facets[e], j, i) += (2 * j + 1) * rule.weight[q] * legendre(j, rule.point[q]) * t(e * num_points + q) *
                                   host.length_of(facets[e]);
+        sum(facets[e], j, i) += own(facets[e], j, i);
+      }
   }
+  require_represented_load(host, traction, load.name, facets, own);
 }
 
 /// Not covered: `what`, on a contact side.
