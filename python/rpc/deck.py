@@ -20,8 +20,8 @@ def read_deck(path):
     """A deck's file as a dict, without the name of its root list.
 
     XML, or YAML if the name ends in .yaml or .yml, which takes PyYAML. A file that is not there is looked for as the program does: in the folder
-    $RPC_INPUT_DIR, then among the decks that come with the program. A "Mesh->File" that lies beside the deck becomes an absolute path, for the
-    dict has no place of its own. Types survive: int, double, bool, string and arrays of these; an array is a list.
+    $RPC_INPUT_DIR, then among the decks that come with the program. The "File" of a mesh or an obstacle that lies beside the deck becomes an
+    absolute path, for the dict has no place of its own. Types survive: int, double, bool, string and arrays of these; an array is a list.
 
     @throws Error if there is no such file, it does not read, or a parameter has another type
     """
@@ -31,11 +31,19 @@ def read_deck(path):
     except (OSError, UnicodeDecodeError) as error:
         raise Error(f'deck: cannot read "{found}": {getattr(error, "strerror", None) or "not a text in UTF-8"}') from None
     deck = _read_yaml(found, text) if found.suffix.lower() in (".yaml", ".yml") else _read_xml(found, text)
-    mesh = deck.get("Mesh")
-    file = mesh.get("File") if isinstance(mesh, dict) else None
-    if isinstance(file, str) and file and (found.parent / file).is_file():
-        mesh["File"] = str((found.parent / file).resolve())
+    for entry in lists_with_files(deck):
+        if isinstance(entry["File"], str) and entry["File"] and (found.parent / entry["File"]).is_file():
+            entry["File"] = str((found.parent / entry["File"]).resolve())
     return deck
+
+
+def lists_with_files(deck):
+    """The lists of a deck with a parameter "File": its mesh, and obstacles that are given by one."""
+    if isinstance(deck, Mapping):
+        if "File" in deck:
+            yield deck
+        for entry in deck.values():
+            yield from lists_with_files(entry)
 
 
 def write_deck(deck, path):

@@ -14,7 +14,7 @@ import threading
 import time
 from collections.abc import Mapping
 
-from .deck import read_deck, text_of, with_settings, xml_of
+from .deck import lists_with_files, read_deck, text_of, with_settings, xml_of
 from .errors import Error
 from .program import find_program
 from .result import RECORD, load
@@ -113,9 +113,9 @@ def _of_row(result, row):
 def _key(deck, ranks, version):
     """What a run depends on, as a short name."""
     found = hashlib.sha256(f"{xml_of(deck)}\n{ranks}\n{version}\n".encode())
-    file = deck.get("Mesh", {}).get("File") if isinstance(deck.get("Mesh"), dict) else None
-    if isinstance(file, (str, os.PathLike)) and os.path.isfile(file):
-        found.update(pathlib.Path(file).read_bytes())
+    for entry in lists_with_files(deck):
+        if isinstance(entry["File"], (str, os.PathLike)) and os.path.isfile(entry["File"]):
+            found.update(pathlib.Path(entry["File"]).read_bytes())
     return found.hexdigest()[:12]
 
 

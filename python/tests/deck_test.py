@@ -53,6 +53,10 @@ class Decks(TestCase):
         deck = rpc.read_deck(SOURCE / "input" / "hertz.xml")
         self.assertEqual(deck["Mesh"]["File"], str(SOURCE / "input" / "hertz.geo"))
 
+    def test_a_file_of_an_obstacle_has_a_place(self):
+        deck = rpc.read_deck(SOURCE / "input" / "rough.xml")
+        self.assertEqual(deck["Contact"]["Obstacle"]["File"], str(SOURCE / "input" / "rough.npy"))
+
     def test_decks_of_the_program_are_found_by_name(self):
         self.assertEqual(rpc.read_deck("beam.xml"), rpc.read_deck(SOURCE / "input" / "beam.xml"))
 

@@ -131,6 +131,20 @@ class Studies(TestCase):
         rpc.study(deck, {YIELD: [8]}, **options)
         self.assertEqual(self.runs(), 1)
 
+    def test_a_height_map_that_has_changed_is_another_run(self):
+        heights = self.folder / "flat.csv"
+        obstacle = {"Type": "height map", "File": str(heights), "Spacing X": 1.25, "Origin": [0.0, 0.0], "Normal": [0.0, 1.0]}
+        deck = beam(Contact={"Side": "bottom", "Obstacle": obstacle})
+        energies = []
+        for height in ("-0.001", "-0.001", "-0.002"):
+            heights.write_text(",".join([height] * 5) + "\n")
+            results, _ = self.study(deck, {YIELD: [8]}, folder=self.folder / "study", program=self.counted())
+            self.assertEqual(results[0].code, 0, results[0].message)
+            energies.append(results[0].summary["energy_J"])
+        self.assertEqual(energies[0], energies[1])
+        self.assertNotEqual(energies[1], energies[2])
+        self.assertEqual(self.runs(), 2)
+
     def test_ctrl_c_ends_all_runs(self):
         program = self.script(f"echo $$ >> '{self.folder}/pids'\nexec sleep 600")
         code = f"import rpc; rpc.study('beam.xml', {{{YIELD!r}: [8, 12, 16]}}, workers=2, program={str(program)!r})"
