@@ -220,9 +220,10 @@ std::string with_bytes_marked(const std::string &text)
 {
   static constexpr char digits[] = "0123456789ABCDEF";
   std::string marked;
-  for (const unsigned char c : text) {
-    if (c < 0x80)
-      marked += static_cast<char>(c);
+  for (std::size_t n = 0; n < text.size(); ++n) {
+    const auto c = static_cast<unsigned char>(text[n]);
+    if (c < 0x80 && text.compare(n, 2, byte_mark) != 0)
+      marked += text[n];
     else
       marked += byte_mark + std::string{digits[c / 16], digits[c % 16]};
   }
@@ -233,7 +234,10 @@ std::string with_bytes(const std::string &marked)
 {
   std::string text;
   for (std::size_t n = 0; n < marked.size(); ++n) {
-    if (marked.compare(n, 2, byte_mark) == 0 && n + 3 < marked.size() && std::isxdigit(marked[n + 2])) {
+    const bool is_byte = marked.compare(n, 2, byte_mark) == 0 && n + 3 < marked.size() &&
+                         std::isxdigit(static_cast<unsigned char>(marked[n + 2])) &&
+                         std::isxdigit(static_cast<unsigned char>(marked[n + 3]));
+    if (is_byte) {
       text += static_cast<char>(std::stoi(marked.substr(n + 2, 2), nullptr, 16));
       n += 3;
     } else {

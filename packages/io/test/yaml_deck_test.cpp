@@ -71,6 +71,8 @@ TEST_F(YamlDeck, HasLettersOfAllLanguagesInCommentsNamesAndTexts)
   EXPECT_EQ(list.sublist("Dirichlet").sublist("Außen").get<double>("X"), 0);
   EXPECT_EQ(list.sublist("Contact").get<std::string>("Side"), "接触面");
   EXPECT_EQ(list.sublist("Contact").get<std::string>("Gap"), "ü");
+  for (const std::string name : {"a~~4Z~~1ä", "~~41é", "~~~ö~~"})
+    EXPECT_TRUE(read("deck:\n  " + name + ": {X: 0.0}\n").isSublist(name)) << name;
   expect_refused("\u00a0\u00a0\u00a0\u00a0Side: foot", "a blank that does not break lines");
 }
 
