@@ -99,7 +99,6 @@ std::optional<mesh::MeshOptions> sized(const mesh::MeshOptions &first, const Ada
 
 void require_adaptable(const Task &task)
 {
-  if (task.adapt.bound == ErrorBound::guaranteed) bound::require_covered(task);
   RPC_REQUIRE(
       !task.adapt.adapts() || nests(task.mesh, task.adapt) || mesh::has_gmsh(),
       "deck: \"Adapt->Meshes\" = gmsh needs gmsh, and this rpc was built without it. Write nested, or automatic.");
@@ -107,8 +106,9 @@ void require_adaptable(const Task &task)
       !task.adapt.adapts() || sized(task.mesh, task.adapt, nullptr, 0),
       "deck: \"Adapt->Meshes\" = gmsh goes with a box or a geometry, which can be meshed anew; the mesh is a file "
       "of cells. Its cells can be halved: nested, if they are triangles or tetrahedra.");
+  const bool bounded = task.adapt.bound == ErrorBound::guaranteed, errors = task.adapt.estimate || bounded;
   const auto &contact = task.model.contact;
-  for (std::size_t a = 0; a < contact.size() && task.adapt.estimate; ++a)
+  for (std::size_t a = 0; a < contact.size() && errors; ++a)
     for (std::size_t b = 0; b < a; ++b)
       RPC_REQUIRE(contact[a].side != contact[b].side,
                   "deck: \"Adapt\" does not go with several foundations of one side, \""
@@ -116,11 +116,12 @@ void require_adaptable(const Task &task)
                       << "\": their errors are not estimated yet. Leave \"Adapt\" out.");
   for (const auto &condition : task.model.dirichlet)
     RPC_REQUIRE(
-        !condition.is_moved() || !(task.adapt.estimate || task.adapt.adapts()),
+        !condition.is_moved() || !errors,
         "deck: \"Adapt\" does not go with a side that a force moves, \"Dirichlet->"
             << condition.name
             << "\": errors are not estimated there yet. Leave \"Adapt\" out, or prescribe the displacement that "
                "the force has led to.");
+  if (bounded) bound::require_covered(task);
 }
 
 } // namespace rpc::adapt
