@@ -250,6 +250,10 @@ class Told(ConsoleTestCase):
         self.run_deck(SMALL, "--set=Traction->top->Y=0", "--set=Adapt->Estimate Error=true")
         self.assertEqual(self.end["errors"], "not known: the strain energy is at rounding level")
 
+    def test_a_guaranteed_bound_where_nothing_is_strained_is_no_share_of_0(self):
+        self.run_deck(SMALL, "--set=Traction->top->Y=0", "--set=Adapt->Error Bound=guaranteed")
+        self.assertEqual(self.end["guaranteed"], "J of the exact solution is in [0, 0] J/m; error at most 0.0e+00 in the energy norm")
+
     def test_the_end_begins_with_the_outcome_and_has_the_residuals_once(self):
         self.run_deck(SMALL)
         self.assertEqual(self.stdout.count("duality gap"), 1)
