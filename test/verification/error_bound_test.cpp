@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/core/error.hpp"
+#include "rpc/mesh/has_gmsh.hpp"
 #include "run_scene.hpp"
 
 #include <cmath>
@@ -156,6 +157,9 @@ TEST(ErrorBound, IsRefusedWithWhatIsCovered)
           "does not go with a side that a force moves");
   refused("beam.xml", {small, "Contact->Gap=1e-3*x^4"}, "another than between its nodes");
   refused("beam.xml", {small, "Material->Poisson's Ratio=0.45"}, "projected dilatation");
+  if (mesh::has_gmsh())
+    refused("beam.xml", {small, "Mesh->Element=Q2", "Adapt->Target Relative Error=0.1", "Adapt->Meshes=gmsh"},
+            "\"Mesh->Element\" = P2, or \"Adapt->Meshes\" = nested");
   refused("track.xml", {}, "Steps");
   refused("block.xml", {"Contact->Yield Stress=16"}, "in space");
 }

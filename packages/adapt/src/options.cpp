@@ -5,6 +5,7 @@
 #include "rpc/core/error.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/core/remedies.hpp"
+#include "rpc/mesh/box.hpp"
 #include "rpc/mesh/has_gmsh.hpp"
 
 #include <cmath>
@@ -121,7 +122,14 @@ void require_adaptable(const Task &task)
             << condition.name
             << "\": errors are not estimated there yet. Leave \"Adapt\" out, or prescribe the displacement that "
                "the force has led to.");
-  if (bounded) bound::require_covered(task);
+  if (!bounded) return;
+  bound::require_covered(task);
+  const auto *const box = std::get_if<mesh::BoxOptions>(&task.mesh);
+  RPC_REQUIRE(!task.adapt.adapts() || nests(task.mesh, task.adapt) || !box ||
+                  box->element.shape == mesh::Shape::simplex,
+              "deck: \"Adapt->Error Bound\" = guaranteed covers parallelograms, and the quadrilaterals that gmsh makes "
+              "for the next mesh are none. Write \"Mesh->Element\" = P"
+                  << box->element.order << ", or \"Adapt->Meshes\" = nested");
 }
 
 } // namespace rpc::adapt
