@@ -113,6 +113,9 @@ class Forces(RpcTestCase):
         self.refuse(written(BOX, "Force Y: -1.0").replace("Dirichlet:", left), BAD_INPUT, ["both hold Y of one node", '"Force Y" is to move it'])
         side = written(BOX, "Y: 0.0").replace("top: {X: 0.0, Y: 0.0}", "left: {X: 0.0, Force Y: -40.0}").replace("[0.9, -3.0]", "[0.1, -3.0]")
         self.refuse(side, BAD_INPUT, ["the node at (0, 0)", "touches"])
+        slope = written(BOX, "Y: -0.02").replace("top: {X: 0.0, Y: -0.02}", "right: {X: 0.0, Y: -0.02}\n    left: {Force X: 10.0}")
+        slope = slope.replace("{Type: sphere, Centre: [0.9, -3.0], Radius: 3.0}", "{Type: plane, Point: [0.0, 0.0], Normal: [0.4, 1.0]}")
+        self.refuse(slope, BAD_INPUT, ["the node at (0, 0)", "touches"])  # the force draws it off, and a pressure without it was to be seen
         drawn = written(BOX, "Y: 0.0").replace("top: {X: 0.0, Y: 0.0}", "top: {Y: -0.01}\n    left: {Force X: 1.0}")
         self.refuse(drawn.replace("LAW", "").replace("Side: bottom", "Side: bottom\n    Friction Coefficient: 0.2"), BAD_INPUT, ["has friction"])
         revolved = written(BOX, "Y: -0.001").replace("ram:", "ram:\n  Kinematics: axisymmetric").replace("X: 0.0, Y", "Force X: 1.0, Y")

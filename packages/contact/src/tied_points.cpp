@@ -54,12 +54,13 @@ void require_no_friction_on_tied(const fem::Discretization &d, const ContactNode
 }
 
 void settle_tied_points(const fem::Discretization &d, const ContactNodes &points, const fem::DirichletDofs &dirichlet,
-                        const std::vector<ContactOptions> &options, const Vector &u)
+                        const std::vector<ContactOptions> &options, const ContactState &state)
 {
   if (!dirichlet.tied) return;
   const ContactNodes c = points;
   const auto group = dirichlet.tied->group;
-  const auto x = device_read(u);
+  const auto pressure = state.multiplier.normal;
+  const auto x = device_read(*state.displacement);
   const DeviceView<char *> touches("rpc::contact::tied_touches", c.size());
   Kokkos::parallel_for(
       "rpc::contact::settle_tied", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
@@ -73,7 +74,7 @@ void settle_tied_points(const fem::Discretization &d, const ContactNodes &points
         if (!(part > Rounding::direction)) return;
         if (c.fixed(i)) c.free_gap(i) = c.gap(i) + c.dent(i);
         c.free_gap(i) -= moved;
-        touches(i) = c.weight(i) > 0 && penetration(c, i, x) > 0;
+        touches(i) = c.weight(i) > 0 && (pressure(i) > 0 || penetration(c, i, x) > 0);
       });
   Kokkos::fence();
   const auto touching = to_host(touches);

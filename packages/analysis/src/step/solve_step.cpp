@@ -345,7 +345,7 @@ void read_tied(const Problem &problem, StepSolution &s)
   if (!dirichlet.tied) return;
   const auto &conditions = problem.model().dirichlet;
   if (s.uzawa.converged)
-    contact::settle_tied_points(problem.discretization(), s.step.contact, dirichlet, problem.model().contact, *s.u);
+    contact::settle_tied_points(problem.discretization(), s.step.contact, dirichlet, problem.model().contact, s.state);
   s.displacements = MeanDisplacements(problem)(*s.u);
   const auto moved = means(*dirichlet.tied, *s.u);
   const auto groups = fem::moved_by_force(conditions);
