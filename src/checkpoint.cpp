@@ -62,6 +62,7 @@ json to_json(const StepRecord &r, const ResultScope &scope)
                 {"displacements", r.displacements},
                 {"reactions", r.reactions},
                 {"work", kept_numbers(analysis::step_work, r, scope)},
+                {"from_rest", r.from_rest},
                 {"seconds", r.seconds}};
   for (const auto &q : defined_numbers(analysis::step_parts, scope)) entry[q.key] = r.*q.value;
   return entry;
@@ -79,6 +80,7 @@ StepRecord record_from(const json &j, const ResultScope &scope)
   r.reactions = j.at("reactions").get<std::vector<std::array<double, 3>>>();
   take_numbers(j.at("work"), analysis::step_work, r, scope);
   for (const auto &q : defined_numbers(analysis::step_parts, scope)) r.*q.value = j.at(q.key);
+  r.from_rest = j.value("from_rest", false);
   r.seconds = j.at("seconds");
   return r;
 }

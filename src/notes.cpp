@@ -63,6 +63,20 @@ std::string penalty_note(const analysis::Solution &s)
          " contact points, where it counts as auto";
 }
 
+/// Steps that friction did not let go on from where the last one had ended.
+std::string jump_note(const analysis::Solution &s)
+{
+  const auto jumped = [](const analysis::StepRecord &step) { return step.from_rest; };
+  const auto first = std::find_if(s.history.begin(), s.history.end(), jumped);
+  if (first == s.history.end()) return "";
+  std::ostringstream note;
+  note << "in " << std::count_if(first, s.history.end(), jumped) << " of " << s.history.size()
+       << " steps, first at t = " << first->time
+       << ", the friction states settled from rest alone, not from the step before: with much friction there may be "
+          "several solutions, and the body may have jumped to another one. More \"Steps->Times\" before it tell";
+  return note.str();
+}
+
 bool touches(const analysis::Solution &s)
 {
   return s.contact.total.contact_length > 0 ||
@@ -222,7 +236,7 @@ std::vector<std::string> notes_on_mesh(const Scene &scene, const fem::Discretiza
 std::vector<std::string> notes_on_results(const Scene &scene, const Solution &s)
 {
   std::vector<std::string> notes;
-  for (const std::string &note : {balance_note(s), strain_note(scene, s), penalty_note(s)})
+  for (const std::string &note : {balance_note(s), strain_note(scene, s), penalty_note(s), jump_note(s)})
     if (!note.empty()) notes.push_back(note);
   return notes;
 }

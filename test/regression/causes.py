@@ -237,6 +237,12 @@ class Causes(RpcTestCase):
                 summary = self.summary(SHEARED, f"--set=Contact->Friction Coefficient={mu}")
                 self.assertLess(summary["energy_J"], 1e-20)  # at t = 4 it has left its dents
 
+    def test_a_step_that_settles_from_rest_alone_is_told(self):
+        told = "first at t = 3.75, the friction states settled from rest alone"
+        self.assertEqual(sum(told in note for note in self.summary(SHEARED)["notes"]), 1)
+        little = self.summary(SHEARED, "--set=Contact->Friction Coefficient=0.5")
+        self.assertFalse([note for note in little["notes"] if "from rest" in note])
+
 
 if __name__ == "__main__":
     unittest.main()

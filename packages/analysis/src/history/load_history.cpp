@@ -51,6 +51,7 @@ void add_work(const StepSolution &s, StepRecord &record)
   record.linear_iterations =
       std::accumulate(s.linear.iterations.begin(), s.linear.iterations.end(), record.linear_iterations);
   record.preconditioner_setups += s.linear.preconditioner_setups;
+  record.from_rest = record.from_rest || s.from_rest;
 }
 
 } // namespace
@@ -120,6 +121,7 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   Headway attempts({step_rules.helpful, 0, Headway::unlimited, step_rules.most_attempts - 1});
   while (true) {
     last_.parts = 0; // counted as they are solved
+    last_.from_rest = false;
     s = advance_in_parts(t, {max_halvings_, balance_halvings_, std::max(max_halvings_, balance_halvings_), tolerance},
                          progress, now);
     const double off = s.uzawa.converged ? share_missed(energies_before, s, energy_tolerance_) : 0;
@@ -179,6 +181,7 @@ StepSolution LoadHistory::advance_in_parts(const double t, const Halvings &left,
                                            const std::function<void(const Problem &, const Step &)> &now)
 {
   const Remembered before = kept_;
+  const bool from_rest_before = last_.from_rest;
   StepOptions options = options_;
   options.low_penalties = left.failures == 0;         // what else could be tried is to halve the step
   options.from_rest = left.failures == max_halvings_; // parts have solutions near by
@@ -199,6 +202,7 @@ StepSolution LoadHistory::advance_in_parts(const double t, const Halvings &left,
   if (!(half > from && half < t)) return s;
   if (s.uzawa.converged) {
     --last_.parts;
+    last_.from_rest = from_rest_before;
     kept_ = before; // as if what came after had not been tried
   }
   std::optional<UzawaResult> undivided;

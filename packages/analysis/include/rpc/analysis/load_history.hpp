@@ -45,6 +45,7 @@ struct StepRecord {
   int parts = 1;      ///< steps that it took: more than one where it was halved
   int solves =
       0; ///< of its parts: more than these where points met other dents at the places to which a solve had led them
+  bool from_rest = false; ///< StepSolution::from_rest of one of its parts
   Energies energies;
   contact::ContactSums contact;
   std::vector<std::array<double, 3>> side_forces; ///< contact::ContactSums::force of each contact side

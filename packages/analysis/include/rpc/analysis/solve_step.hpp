@@ -98,6 +98,7 @@ struct StepSolution {
   int line_search_steps = 0;                        ///< Newton's, where the active-set iteration was not enough
   int coarse_choices = 0;                           ///< steps to states that a coarser mesh chose
   std::size_t start = 0;                            ///< which of the given states it has started from, if one of them
+  bool from_rest = false;                           ///< friction's states did not settle, and did from the last of them
   GO raised_penalties = 0;                          ///< contact points whose penalty was too weak for friction
   std::vector<LevelWork> levels;                    ///< coarser meshes that predicted the solution, from the coarsest
   std::string not_predicted;                        ///< why no coarser mesh did; empty if one did
