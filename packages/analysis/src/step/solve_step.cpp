@@ -207,14 +207,17 @@ int refine(const Iterate &iterate, Vector &u, SolverState &state)
 /// Where friction's states were not confirmed: the coupled choices once more from where the last Tresca problem led; if these do not
 /// settle soon, the Tresca problem with the next bounds. (12.12)
 Minimization
-minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options, const LastMinimum &last,
+minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options, const int iteration,
+                         const LastMinimum &last,
                          const std::function<solver::MinimizeResult(const solver::MinimizationLoop &, int)> &run)
 {
   int steps = 0, most = options.newton.max_iterations;
   if (solver::takes_loop(options.newton)) {
     const Vector start(u, Teuchos::Copy);
     const Iterate::Dual dual = iterate.dual();
-    if (!last.confirmed) iterate.take_dual(last.dual); // with pressures for multipliers, r v would count twice
+    // With pressures for multipliers r v counts twice, and v may turn its sign at each update. Choices settle from them at times, and at times only
+    // from the multipliers before: in turn.
+    if (!last.confirmed && iteration % 2 == 1) iterate.take_dual(last.dual);
     ActiveSetLoop choices(iterate, active_set_tolerances(options), ActiveSetLoop::Then::nothing);
     const auto tried = run(std::ref(choices), most);
     if (choices.confirmed()) return {tried.converged, tried.steps, tried.reason, true};
@@ -259,7 +262,7 @@ Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector
     }
   }
   if (iteration > 1) {
-    Minimization found = minimize_for_next_bounds(iterate, *u, options, last, run);
+    Minimization found = minimize_for_next_bounds(iterate, *u, options, iteration, last, run);
     found.steps += in_vain;
     return found;
   }
