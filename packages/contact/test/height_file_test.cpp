@@ -123,7 +123,7 @@ TEST(Heights, OfTextsThatAreNoGridAreRefused)
   refuse("a.csv", "1,2,3\n4,5\n", {"as many numbers in each row", "3, got 2 in line 2"});
   refuse("a.csv", "1,2\n4,lots\n", {"got \"lots\" in line 2, column 2"});
   refuse("a.csv", "1,2\n4,nan\n", {"finite", "row 2, column 2"});
-  refuse("a.csv", "1,2\n4,1e999\n2,inf\n", {"finite", "row 3, column 2"});
+  refuse("a.csv", "1,1e-999\n4,1e999\n2,inf\n", {"finite", "row 2, column 2"});
   refuse("a.csv", "x,y,z\n0,0,1\n1,0,1\n3,0,1\n0,1,1\n1,1,1\n3,1,1\n", {"evenly spaced", "along x", "griddata"});
   refuse("a.csv", "x,y,z\n0,0,1\n1,0,1\n0,1,1\n", {"none at (1, 1)", "griddata"});
   refuse("a.csv", "x,y,z\n0,0,1\n0,0,1\n", {"each place once", "line 3"});

@@ -168,6 +168,15 @@ TEST(HeightGrid, ABoxIsAtLeastAsFarFromItAsItSays)
   EXPECT_LT(grid.heights().high, 0.03);
 }
 
+TEST(HeightGrid, ABoxOverManyPeriodsIsAsFarAsOneOverTwo)
+{
+  const HeightGrid grid = rough(Interpolation::bicubic, true);
+  const double two = grid.clearance({{0.3, 0.2, 0.3}, {2.3, 1.4, 0.4}});
+  EXPECT_NEAR(two, 0.3 - grid.heights().high, 1e-15);
+  EXPECT_EQ(grid.clearance({{-1e3, -1e3, 0.3}, {1e3, 1e3, 0.4}}), two); // without going through all seven million
+  EXPECT_EQ(grid.clearance({{-1e3, 0.2, 0.3}, {1e3, 1.4, 0.4}}), two);
+}
+
 TEST(HeightGrid, OfOneRowIsAProfile)
 {
   const auto h = [](const double x, double) { return x * x; };

@@ -231,6 +231,15 @@ TEST(SurfaceMesh, TellsInsideFromOutsideAsLinesDo)
   EXPECT_GT(inside, 30);
 }
 
+TEST(SurfaceMesh, HasADirectionOnTheEdgeOfAFinWithoutThickness)
+{
+  Triangles t = box();
+  for (const Point &x : {Point{0, 0, 3}, {1, 0, 3}, {0, 1, 3}}) t.points.push_back(x);
+  t.corners.push_back({8, 9, 10});
+  t.corners.push_back({8, 10, 9});
+  EXPECT_NEAR(direction_into(read(text_stl(t)), {0.5, 0, 3}).value()[1], 1, 1e-14);
+}
+
 TEST(SurfaceMesh, RefusesWhatIsNoSurfaceOfABody)
 {
   const auto refuse = [](const std::string &bytes, const std::initializer_list<std::string> &words) {

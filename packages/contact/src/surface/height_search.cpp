@@ -78,9 +78,10 @@ void HeightGrid::search(const Box &box, const Bound &bound, const Wants &wants, 
   const std::array<double, 2> size = extent();
   std::array<std::array<int, 2>, 2> periods{};
   for (int c = 0; c < 2 && periodic_; ++c)
-    if (cells_[c] > 0)
-      periods[c] = {static_cast<int>(std::floor(box.low[c] / size[c])) - 1,
-                    static_cast<int>(std::floor(box.high[c] / size[c])) + 1};
+    if (cells_[c] > 0) { // two whole periods are over any place of a box that is as wide as one
+      const int first = static_cast<int>(std::floor(box.low[c] / size[c])) - 1;
+      periods[c] = {first, std::min(static_cast<int>(std::floor(box.high[c] / size[c])) + 1, first + 3)};
+    }
   const int top = static_cast<int>(levels_.size()) - 1;
   for (int q = periods[1][0]; q <= periods[1][1]; ++q)
     for (int p = periods[0][0]; p <= periods[0][1]; ++p) add({0, top, 0, 0, {p, q}});

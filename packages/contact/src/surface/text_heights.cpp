@@ -6,6 +6,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <set>
@@ -57,7 +58,9 @@ std::optional<double> number_in(std::string_view word)
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (end != word.data() + word.size() || error == std::errc::invalid_argument) return std::nullopt;
-  return error == std::errc() ? value : 0; // beyond all numbers: of those that are too small
+  if (error != std::errc())
+    return std::strtod(std::string(word).c_str(), nullptr); // too small or too large: 0 or infinite
+  return value;
 }
 
 /// A word as it may stand in a message.

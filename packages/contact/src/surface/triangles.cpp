@@ -170,7 +170,9 @@ ClosedSurface::Foot ClosedSurface::foot_on(const std::size_t triangle, const Poi
     if (along > 0 && along < 1 && !(outside < 0)) { // nearest to the edge from corner k to the next
       weights[k] = 1 - along;
       weights[(k + 1) % 3] = along;
-      normal = unit_of(sum_of(normal_[triangle], beyond_[triangle][k]));
+      normal = sum_of(normal_[triangle], beyond_[triangle][k]);
+      // Of two triangles that lie on each other the edge looks away from both.
+      normal = unit_of(length(normal) > Rounding::place ? normal : cross(edge[k], normal_[triangle]));
       return finish();
     }
   }
