@@ -32,6 +32,7 @@ StepOptions rough(StepOptions options)
 {
   options.newton.residual_tolerance = options.uzawa.tolerance = options.prediction.tolerance;
   options.newton.max_iterations = std::min<int>(options.newton.max_iterations, solver::newton_rules.most_inner_steps);
+  options.looks_between_nodes = false;
   return options;
 }
 

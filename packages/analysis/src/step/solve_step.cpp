@@ -44,7 +44,7 @@ double residual_before(const std::vector<double> &worst, bool bounds_follow);
 contact::OptimalityResiduals judge(const Problem &problem, const Step &step, const Iterate &iterate,
                                    const contact::ContactState &now, SolverState &state, double tolerance);
 void tell_want_of_friction(UzawaResult &uzawa, const Problem &problem);
-void read_results(const Problem &problem, StepSolution &s);
+void read_results(const Problem &problem, const StepOptions &options, StepSolution &s);
 solver::LinearSolverCounts counts_since(const solver::LinearSolverCounts &before, solver::LinearSolverCounts now);
 void add_work(const StepSolution &other, StepSolution &s);
 
@@ -109,7 +109,7 @@ StepSolution solve_with(const Problem &problem, const Step &step, SolverState &s
     if (!uzawa.converged && step.support.by_coulomb_only) tell_want_of_friction(uzawa, problem);
     s.u = s.state.displacement;
     s.state.rest = Teuchos::null; // of the judgement alone
-    read_results(problem, s);
+    read_results(problem, options, s);
   }
   s.linear = counts_since(counts_before, state.linear().counts());
   s.solve_seconds -= s.linear.setup_seconds;
@@ -357,14 +357,15 @@ void read_tied(const Problem &problem, StepSolution &s)
   for (std::size_t j = 0; j < groups.size(); ++j) s.displacements[groups[j].condition][groups[j].component] = moved[j];
 }
 
-void read_results(const Problem &problem, StepSolution &s)
+void read_results(const Problem &problem, const StepOptions &options, StepSolution &s)
 {
   read_tied(problem, s);
   s.contact = contact::contact_result(problem.discretization(), problem.contact_sides(), s.step.contact, s.state,
                                       contact::has_friction(problem.model().contact));
-  contact::look_between_nodes(problem.discretization(), problem.contact_sides(),
-                              problem.model().seen_at(s.step.time).contact, s.step.contact, problem.model().materials,
-                              *s.state.displacement, s.contact); // (3.15)
+  if (options.looks_between_nodes)
+    contact::look_between_nodes(problem.discretization(), problem.contact_sides(),
+                                problem.model().seen_at(s.step.time).contact, s.step.contact, problem.model().materials,
+                                *s.state.displacement, s.contact); // (3.15)
   s.energy_norm_squared = s.uzawa.residuals.internal.energy_norm_squared;
   const double elastic = 0.5 * s.energy_norm_squared - s.step.elastic.applied_load->dot(*s.state.displacement); // (1.2)
   s.energy = contact::energy(elastic, s.step.contact, s.state); // paper (6); (5.14)

@@ -37,6 +37,7 @@ struct StepOptions {
       true; ///< where friction's states do not settle, the step is tried once more from the last of the given starts
   bool low_penalties =
       false; ///< where friction's states do not settle, the step is tried once more with low penalties (12.12a)
+  bool looks_between_nodes = true; ///< for contact that no node has (3.15): of users' meshes, not of those that predict
 };
 
 /// Reports while a step is solved; empty functions are not called.
