@@ -77,7 +77,15 @@ struct SideSamples {
     const double most_allowed = rows.most_allowed(f);
     std::vector<std::pair<double, Point>> inside; // depths and places
     double radii = 0;                             // in axisymmetry the samples count by them
-    for (const FacetShape &shape : lattice) {
+    const std::size_t run = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(lattice.size()))));
+    bool near = true;
+    for (std::size_t n = 0; n < lattice.size(); ++n) {
+      const FacetShape &shape = lattice[n];
+      if (n % run == 0) near = some_are_near(f, n, std::min(n + run, lattice.size()));
+      if (!near) {
+        radii += axisymmetric ? place_at(rows, f, shape)[0] : 1;
+        continue;
+      }
       const FacetSample sample = sample_at(rows, f, shape, options, most_allowed);
       const double depth = excess_at(sample, options);
       radii += axisymmetric ? sample.place[0] : 1;
@@ -93,6 +101,21 @@ struct SideSamples {
       found.squared += (axisymmetric ? place[0] : 1) * pushed_out(options, depth, modulus, found.width, place);
     found.squared *= radii > 0 ? rows.area(f) / radii : 0;
     return found;
+  }
+
+  /// Whether some of a run of samples may lie in the foundation. None does that is further from it than the body moves there. Along fixed normals
+  /// a sample costs less than to ask.
+  bool some_are_near(const LO f, const std::size_t first, const std::size_t last) const
+  {
+    const SurfaceDetail *const detail = detail_of(options);
+    if (detail == nullptr || options.normal != Normal::foundation) return true;
+    Bounds places = Bounds::empty();
+    double moved = 0;
+    for (std::size_t n = first; n < last; ++n) {
+      places.add(difference(place_at(rows, f, lattice[n]), options.obstacle.point));
+      moved = std::max(moved, length(displacement_at(rows, f, lattice[n])));
+    }
+    return detail->clearance(places) <= moved;
   }
 
   /// Whether a facet may reach into the foundation: its nodes tell, if what they show varies little, or the foundation does, if it can.

@@ -144,6 +144,22 @@ FacetRows facet_rows(const fem::Discretization &d, const mesh::Side &facets, con
   return rows;
 }
 
+Point place_at(const FacetRows &rows, const LO f, const FacetShape &shape)
+{
+  Point x{};
+  for (int a = 0; a < rows.nodes; ++a)
+    for (int k = 0; k < rows.dim; ++k) x[k] += shape.value[a] * rows.place(f, a)[k];
+  return x;
+}
+
+Point displacement_at(const FacetRows &rows, const LO f, const FacetShape &shape)
+{
+  Point u{};
+  for (int a = 0; a < rows.nodes; ++a)
+    for (int k = 0; k < rows.dim; ++k) u[k] += shape.value[a] * rows.displacement(f, a)[k];
+  return u;
+}
+
 FacetSample sample_at(const FacetRows &rows, const LO f, const FacetShape &shape, const ContactOptions &options,
                       const double most_allowed)
 {

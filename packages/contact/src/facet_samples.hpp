@@ -66,6 +66,10 @@ struct FacetSample {
   bool has_normal = true; // else it is at the centre of an obstacle
 };
 
+/// Of the undeformed body, and its displacement there [m].
+Point place_at(const FacetRows &rows, LO f, const FacetShape &shape);
+Point displacement_at(const FacetRows &rows, LO f, const FacetShape &shape);
+
 /// @param most_allowed  of the facet, see FacetRows
 FacetSample sample_at(const FacetRows &rows, LO f, const FacetShape &shape, const ContactOptions &options,
                       double most_allowed);

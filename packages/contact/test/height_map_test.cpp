@@ -160,35 +160,62 @@ TEST(HeightMap, RefusesWhatDoesNotFit)
   refuse({"does not go with"}, good, 3, [](auto &list) { list.set("Radius", 1.); });
 }
 
-/// Flat at -0.01, with one height of 0.02, that is not seen by nodes 0.5 m apart.
+/// Spacing of the maps below, and where their peaks are.
+constexpr double h = 1. / 64;
+constexpr double peak[2] = {0.71875, 0.6875};
+
+/// What is seen of a map below a body at rest whose nodes are 0.5 m apart.
+/// @param heights  of (x, y)
+template <class Heights>
+contact::ContactResult seen(const int dim, const contact::Normal normal, const Heights &heights)
+{
+  auto list = map_list(h, dim);
+  list.set("Normal", dim == 2 ? Numbers(Teuchos::tuple(0., 1.)) : Numbers(Teuchos::tuple(0., 0., 1.)));
+  const fem::Discretization d = body({dim, 1});
+  auto options = touching(dim == 2 ? "bottom" : "back");
+  options.normal = normal;
+  options.direction = dim == 2 ? Point{0, -1, 0} : Point{0, 0, -1};
+  options.obstacle = read(list, csv(heights, 129, dim == 2 ? 1 : 65, h), dim);
+  const auto points = nodes_of(d, {options});
+  contact::ContactState state;
+  state.displacement = rcp(new Vector(d.owned_dofs));
+  state.multiplier.normal = DeviceView<double *>("pressure", points.size());
+  const auto sides = contact::contact_sides(*d.mesh, {options});
+  auto result = contact::contact_result(d, sides, points, state);
+  contact::look_between_nodes(d, sides, {options}, points, fem::Material{2000, 0.3}, *state.displacement, result);
+  EXPECT_NE(contact::unseen_contact_note(result, {options}, dim, 0).find("unseen contact"), std::string::npos);
+  return result;
+}
+
+/// Flat at -0.01, with one height of 0.02, that is not seen by nodes.
 TEST(HeightMap, ASpikeBetweenNodesIsUnseenAndTheSizeThatWouldSeeItIsTold)
 {
   for (const int dim : {2, 3}) {
-    const double h = 1. / 64;
     const auto spike = [&](const double x, const double y) {
-      const bool here = std::abs(x - 0.71875) < h / 2 && (dim == 2 || std::abs(y - 0.6875) < h / 2);
+      const bool here = std::abs(x - peak[0]) < h / 2 && (dim == 2 || std::abs(y - peak[1]) < h / 2);
       return here ? 0.02 : -0.01;
     };
-    auto list = map_list(h, dim);
-    list.set("Normal", dim == 2 ? Numbers(Teuchos::tuple(0., 1.)) : Numbers(Teuchos::tuple(0., 0., 1.)));
-    const fem::Discretization d = body({dim, 1});
-    auto options = touching(dim == 2 ? "bottom" : "back");
-    options.normal = contact::Normal::fixed;
-    options.direction = dim == 2 ? Point{0, -1, 0} : Point{0, 0, -1};
-    options.obstacle = read(list, csv(spike, 129, dim == 2 ? 1 : 65, h), dim);
-    const auto points = nodes_of(d, {options});
-    contact::ContactState state;
-    state.displacement = rcp(new Vector(d.owned_dofs));
-    state.multiplier.normal = DeviceView<double *>("pressure", points.size());
-    const auto sides = contact::contact_sides(*d.mesh, {options});
-    auto result = contact::contact_result(d, sides, points, state);
-    contact::look_between_nodes(d, sides, {options}, points, fem::Material{2000, 0.3}, *state.displacement, result);
-    const auto &unseen = result.between.unseen;
+    const auto unseen = seen(dim, contact::Normal::fixed, spike).between.unseen;
     EXPECT_NEAR(unseen.depth, 0.02, 1e-9) << dim; // samples meet the nodes of the map
-    EXPECT_NEAR(unseen.place[0], 0.71875, 1e-9);
+    EXPECT_NEAR(unseen.place[0], peak[0], 1e-9);
     EXPECT_LT(unseen.width, 3 * h);
     EXPECT_GT(unseen.width, h / 2);
-    EXPECT_NE(contact::unseen_contact_note(result, {options}, dim, 0).find("unseen contact"), std::string::npos);
+  }
+}
+
+/// Its slopes are at most 0.02. Along the map's own normals most samples are ruled out by their distance from it, along a fixed one none is.
+TEST(HeightMap, AHillBetweenNodesIsTheSameAlongEitherNormal)
+{
+  for (const int dim : {2, 3}) {
+    const auto hill = [&](const double x, const double y) {
+      const double across = dim == 2 ? 0 : y - peak[1], squared = (x - peak[0]) * (x - peak[0]) + across * across;
+      return 0.002 * std::exp(-squared / (0.08 * 0.08)) - 0.001;
+    };
+    const auto along = seen(dim, contact::Normal::foundation, hill), fixed = seen(dim, contact::Normal::fixed, hill);
+    EXPECT_NEAR(along.between.unseen.depth, 0.001, 1e-9) << dim;
+    EXPECT_NEAR(along.between.unseen.width, fixed.between.unseen.width, 1e-9);
+    EXPECT_GT(fixed.total.unseen_energy, 0);
+    EXPECT_NEAR(along.total.unseen_energy, fixed.total.unseen_energy, 1e-2 * fixed.total.unseen_energy);
   }
 }
 

@@ -15,10 +15,15 @@ namespace rpc::contact
 struct Cubic {
   std::array<double, 4> weight, slope, curvature;
 };
+inline std::array<double, 4> weights_at(const double t)
+{
+  const double s = 1 - t;
+  return {s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t};
+}
 inline Cubic cubic_at(const double t)
 {
   const double s = 1 - t;
-  return {{s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t},
+  return {weights_at(t),
           {-3 * s * s, 3 * s * (s - 2 * t), 3 * t * (2 * s - t), 3 * t * t},
           {6 * s, 6 * (t - 2 * s), 6 * (s - 2 * t), 6 * t}};
 }
@@ -74,6 +79,18 @@ struct HeightGrid::Patch {
       jet.vv += y.curvature[b] * value;
     }
     return jet;
+  }
+  /// The same as at(u, v).height.
+  double height(const double u, const double v) const
+  {
+    const auto x = weights_at(u), y = rows == 1 ? std::array<double, 4>{{1, 0, 0, 0}} : weights_at(v);
+    double height = 0;
+    for (int b = 0; b < rows; ++b) {
+      double value = 0;
+      for (int a = 0; a < 4; ++a) value += x[a] * point[b][a];
+      height += y[b] * value;
+    }
+    return height;
   }
   Interval range() const
   {

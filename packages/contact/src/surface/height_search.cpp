@@ -112,12 +112,12 @@ HeightGrid::Nearest HeightGrid::nearest(const Point &x) const
     const std::array<int, 2> cell{part.i, part.j};
     const std::array<double, 2> from{part.period[0] * size[0] + part.i * spacing_[0],
                                      part.period[1] * size[1] + part.j * spacing_[1]};
-    const auto way = [&](const std::array<double, 2> &t, const Patch::Jet &jet) {
+    const auto way = [&](const std::array<double, 2> &t, const double height) {
       return Point{from[0] + t[0] * spacing_[0] - x[0], directions == 1 ? 0 : from[1] + t[1] * spacing_[1] - x[1],
-                   jet.height - x[2]};
+                   height - x[2]};
     };
     const auto squared = [&](const std::array<double, 2> &t) {
-      const Point d = way(t, patch.at(t[0], t[1]));
+      const Point d = way(t, patch.height(t[0], t[1]));
       return inner(d, d);
     };
     std::array<double, 2> t{0.5, 0.5};
@@ -130,7 +130,7 @@ HeightGrid::Nearest HeightGrid::nearest(const Point &x) const
       }
     for (int step = 0; step < HeightSearch::nearest_steps; ++step) {
       const Patch::Jet jet = patch.at(t[0], t[1]);
-      const Point d = way(t, jet);
+      const Point d = way(t, jet.height);
       const std::array<double, 2> slope{jet.u, jet.v};
       std::array<double, 2> gradient{}, move{};
       std::array<bool, 2> free{};

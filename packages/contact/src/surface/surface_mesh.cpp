@@ -54,8 +54,9 @@ SurfaceDetail SurfaceMesh::detail() const
   const auto clearance = [shape = *this](const Bounds &box) {
     Point middle{};
     for (int c = 0; c < 3; ++c) middle[c] = (box.lower[c] + box.upper[c]) / 2;
-    if (shape.lies_in(middle)) return 0.;
-    return std::max(0., shape.surface->nearest(middle).distance - length(difference(box.upper, middle)));
+    const ClosedSurface::Foot foot = shape.surface->nearest(middle);
+    if (inner(difference(middle, foot.place), foot.normal) < 0) return 0.;
+    return std::max(0., foot.distance - length(difference(box.upper, middle)));
   };
   const auto told = [shape = *this](const std::string &unit) {
     std::ostringstream text;
