@@ -32,7 +32,7 @@ def study(deck, parameters, *, folder=None, workers=1, progress=True, ranks=1, p
 
     @param folder    keeps each run in a folder of its own, run-KEY, and study.csv with a row for each: its parameters, how it ended and its main results,
                      see RESULTS; a study that is called again with it, after Ctrl-C or with more parameters, does not run again what has ended with
-                     exit code 0, 4 or 5 and is the same: deck, file of the mesh, number of ranks and version of the program. None: temporary
+                     exit code 0, 4 or 5 and is the same: deck, files of mesh and obstacles, number of ranks and version of the program. None: temporary
                      folders, which go with the results
     @param workers   runs at a time, > 0
     @param progress  a line on standard error for each run that has ended
@@ -173,6 +173,9 @@ def _main_results(result):
         if key == "contact_force":
             for side, results in summary["results"].get("contact_sides", {}).items():
                 found[f"contact_force on {side}"] = math.hypot(*results["contact_force"]["value"])
+    for side, entry in summary.get("results", {}).get("force_displacement", {}).items() if summary.get("time") is not None else ():
+        found[f"force_displacement of {side}"] = math.hypot(*entry["value"])
+        found[f"force_displacement of {side}_unit"] = entry["unit"]
     return found
 
 

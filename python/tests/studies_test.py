@@ -99,6 +99,30 @@ class Studies(TestCase):
             self.assertEqual(row["contact_force_error_bar"], "")  # one mesh shows none
             self.assertGreater(float(row["seconds"]), 0)
 
+    def test_the_table_has_how_far_a_force_moves_a_side(self):
+        deck = beam(Dirichlet={"top": {"X": 0, "Force Y": -20}}, Traction={})
+        results, _ = self.study(deck, {"Material->Young's Modulus": [1000]}, folder=self.folder / "study")
+        with open(self.folder / "study" / "study.csv", newline="") as file:
+            row = next(csv.DictReader(file))
+        moved = results[0].summary["force_displacement"]["top"]
+        self.assertLess(moved[1], -1e-3)
+        self.assertAlmostEqual(float(row["force_displacement of top"]), -moved[1])
+        self.assertEqual(row["force_displacement of top_unit"], "m")
+
+    def test_a_file_of_an_obstacle_is_found_and_counts(self):
+        heights, deck = self.folder / "heights.csv", self.folder / "rough.xml"
+        heights.write_text("0, 0, 0\n")
+        obstacle = {"Type": "height map", "File": heights.name, "Spacing X": 5, "Origin": [0, -0.001], "Normal": [0, 1]}
+        rpc.write_deck(beam(Contact__Obstacle=obstacle), deck)
+        program, options = self.counted(), {"folder": self.folder / "study"}
+        first, _ = self.study(deck, {YIELD: [2]}, program=program, **options)
+        self.assertEqual((first[0].code, first[0].message), (0, ""))
+        self.study(deck, {YIELD: [2]}, program=program, **options)
+        self.assertEqual(self.runs(), 1)
+        heights.write_text("0, 0.0005, 0\n")
+        self.study(deck, {YIELD: [2]}, program=program, **options)
+        self.assertEqual(self.runs(), 1)
+
     def test_the_table_has_the_force_of_each_of_several_sides(self):
         deck = beam(Dirichlet={"left": {"X": 0}}, Traction={}, Contact={"Side": "bottom", "Gap": -0.002, "Sides": {"top": {"Gap": -0.002}}})
         self.study(deck, {"Material->Poisson's Ratio": [0.3]}, folder=self.folder / "study")
