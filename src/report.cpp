@@ -278,9 +278,12 @@ void print_accuracy(std::ostream &out, const Scene &scene, const Solution &s)
     return;
   }
   if (!s.estimate) {
-    print_text(out, "errors",
-               "not estimated: add \"Adapt->Target Relative Error\", such as 0.01, for error bars on meshes that are "
-               "adapted, or \"Adapt->Estimate Error\" = true for that of J on this mesh");
+    print_text(
+        out, "errors",
+        s.bound && s.bound->missing.empty()
+            ? "bounded of J alone: add \"Adapt->Target Relative Error\", such as 0.01, for further error bars"
+            : "not estimated: add \"Adapt->Target Relative Error\", such as 0.01, for error bars on meshes that are "
+              "adapted, or \"Adapt->Estimate Error\" = true for that of J on this mesh");
     return;
   }
   const adapt::ObservedErrors errors = adapt::errors_of(scene, s);

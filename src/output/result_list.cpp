@@ -75,6 +75,20 @@ void add_error_bars(std::vector<Result> &all, const adapt::ObservedErrors &error
     }
 }
 
+/// An interval that certainly holds J gives its bar, where the estimate is not the shorter one. Of a box alone: the interval of another
+/// mesh is that of a body whose curved sides are polygons.
+void add_bounded_energy(std::vector<Result> &all, const Scene &scene, const Solution &s)
+{
+  if (!s.bound || !s.bound->missing.empty() || !std::holds_alternative<mesh::BoxOptions>(scene.mesh)) return;
+  const double bar = std::max(s.bound->upper - s.energy, s.energy - s.bound->lower);
+  for (Result &result : all) {
+    if (result.key != "energy_J" || result.error_bar <= bar) continue;
+    result.error_bar = bar;
+    result.no_bar.clear();
+    result.tells_why = false;
+  }
+}
+
 /// Those of supports, which are unknown where that of the contact force is.
 void add_reaction_bars(std::vector<Result> &all, const adapt::ObservedErrors &errors)
 {
@@ -198,6 +212,7 @@ std::vector<Result> result_list(const Scene &scene, const Solution &s)
   add_place(all, scene, s);
   add_reaction_bars(all, errors);
   add_error_bars(all, errors, scope, s.adaptation && std::isfinite(s.adaptation->errors.energy));
+  add_bounded_energy(all, scene, s);
   double largest = 0;
   for (const auto &side : s.contact.sides) largest = std::max(largest, length(side.force));
   mark_nothing(all, s.body.displacement, scene.step.uzawa.tolerance, largest);

@@ -324,6 +324,18 @@ class Told(ConsoleTestCase):
         self.assertEqual(results["energy_J"]["reason"], "there is no solution")
         self.assertNotIn("nan", self.stdout)
 
+    @unittest.skipIf(RANKS > 1, "guaranteed bounds go with one rank")
+    def test_a_guaranteed_interval_of_J_is_its_bar(self):
+        for more in ([], ["--set=Mesh->Element=P2", "--set=Adapt->Target Relative Error=0.05"]):
+            results = self.run_deck(SMALL, "--set=Adapt->Error Bound=guaranteed", *more)
+            lower, upper = self.summary["error_bound"]["energy_J"]
+            value, bar = results["energy_J"]["value"], results["energy_J"]["error_bar"]
+            if not more:
+                self.assertAlmostEqual(bar, max(upper - value, value - lower))
+                self.assertIn("bounded of J alone", self.end["errors"])
+            self.assertLessEqual(bar, 1.0001 * max(upper - value, value - lower))
+            self.check_block(results, self.end)
+
     def test_names_the_units_of_the_deck(self):
         results = self.run_deck(SMALL, "--set=Units->Length=mm")
         self.assertEqual((results["contact_force"]["unit"], results["energy_J"]["unit"]), ("N/mm", "mJ/mm"))
