@@ -195,6 +195,9 @@ private:
     for (const char *const mark : {"\u201c", "\u201d", "\u201e", "\u00ab", "\u00bb", "\u2019", "\u2018"})
       for (auto found = plain_text.find(mark); found != std::string::npos; found = plain_text.find(mark))
         plain_text.erase(found, std::strlen(mark));
+    if (!plain_text.empty() && (plain_text.back() == '"' || plain_text.back() == '\''))
+      refuse(line_, name + "=" + given + " lacks its first quote. Write " + name + "=\"" +
+                        plain_text.substr(0, plain_text.size() - 1) + "\".");
     refuse(line_, name + "=" + given + (plain_text != given ? " has typographic quotes" : " has no quotes") +
                       ". Write " + name + "=\"" + plain_text + "\".");
   }

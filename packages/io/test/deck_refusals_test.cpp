@@ -105,6 +105,7 @@ TEST_F(Refusal, OfTagsSaysWhatIsOpen)
 TEST_F(Refusal, OfAttributesSaysWhatToWrite)
 {
   expect_xml("value=\"bottom\"", "value=bottom", 8, "value=bottom has no quotes. Write value=\"bottom\".");
+  expect_xml("value=\"bottom\"", "value=bottom\"", 8, "value=bottom\" lacks its first quote. Write value=\"bottom\".");
   expect_xml("value=\"bottom\"", "value=\u201cbottom\u201d", 8, "typographic quotes. Write value=\"bottom\".");
   expect_xml("value=\"bottom\"", "value=\"bottom", 8, "the quote of value=\"bottom/> does not close");
   expect_xml("value=\"0.1\"", "value=\"x<2 ? x : 0\"", 9, "Write value=\"x&lt;2 ? x : 0\".");
