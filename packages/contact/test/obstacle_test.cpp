@@ -203,7 +203,7 @@ TEST(ObstacleOptions, RefuseWhatDoesNotFit)
          [](auto &list) { list.set("Type", "pyramid"); });
   refuse("must hold 2 numbers or expressions of t, got 3",
          [](auto &list) { list.set("Point", Numbers(Teuchos::tuple(0., 0., 0.))); });
-  refuse("must hold 2 numbers, got 0", [](auto &list) { list.remove("Normal"); });
+  refuse("must hold 2 numbers, got 0. It has no default: add it.", [](auto &list) { list.remove("Normal"); });
   refuse("length > 0", [](auto &list) { list.set("Normal", Numbers(Teuchos::tuple(0., 0.))); });
   refuse("does not go with", [](auto &list) { list.set("Radius", 1.); });
   refuse("does not go with", [](auto &list) { list.set("Type", "circle"); });

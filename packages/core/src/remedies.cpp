@@ -349,8 +349,9 @@ std::string axis_remedy(const std::string &text)
 
 std::string word_remedy(const std::string &text, const std::vector<std::string> &words)
 {
-  const std::string meant = found_word(words_for_words, letters(text));
-  if (std::find(words.begin(), words.end(), meant) != words.end()) return " For \"" + text + "\" write " + meant + ".";
+  for (const auto &[other, meant] : words_for_words) // a word may mean several: one of a mesh, another of a tool
+    if (other == letters(text) && std::find(words.begin(), words.end(), meant) != words.end())
+      return " For \"" + text + "\" write " + meant + ".";
   return did_you_mean(text, words);
 }
 

@@ -52,7 +52,7 @@ std::string component_remedy(const std::string &name, const Teuchos::ParameterLi
              displacement = is_one_of_these({"u", "d", "disp", "displacement"});
   if (force && valid.isParameter("Force " + axis))
     return " Did you mean \"Force " + axis + "\", the force on the whole side, or \"" + axis +
-           "\", the force per area?";
+           (unit == "m" ? "\", its displacement?" : "\", the force per area?");
   if (displacement && unit != "m") return " A displacement is prescribed in \"Dirichlet\".";
   if (!displacement && !quantity.empty() && unit == "m") return " A load belongs into \"Traction\".";
   return " Did you mean \"" + axis + "\"?";
@@ -64,6 +64,10 @@ std::string components_remedy(const std::string &name, const Teuchos::ParameterL
   const std::string word = letters(name), unit = wanted_of(valid, "X").unit;
   const bool load = word.find("force") != word.npos || word.find("load") != word.npos || word == "f";
   const bool pressure = word.find("pressure") != word.npos || word.find("traction") != word.npos || word == "p";
+  if (unit == "m" && load && valid.isParameter("Force X"))
+    return " Write the components of the force that moves the side as one rigid piece, Force X, Force Y, Force Z; a "
+           "load "
+           "that leaves the side soft belongs into \"Traction\".";
   if (unit == "m")
     return load || pressure ? " A load belongs into \"Traction\"." : " Write the displacement's components: X, Y, Z.";
   if (load && valid.isParameter("Force X"))

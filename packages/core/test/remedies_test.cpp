@@ -159,6 +159,7 @@ TEST(WordRemedy, KnowsWordsOfOtherPrograms)
 {
   EXPECT_EQ(rpc::word_remedy("step", {"box", "gmsh"}), " For \"step\" write gmsh.");
   EXPECT_EQ(rpc::word_remedy("STL", {"box", "gmsh"}), " For \"STL\" write gmsh.");
+  EXPECT_EQ(rpc::word_remedy("STL", {"plane", "surface mesh"}), " For \"STL\" write surface mesh.");
   EXPECT_EQ(rpc::word_remedy("ball", {"plane", "sphere"}), " For \"ball\" write sphere.");
   EXPECT_EQ(rpc::word_remedy("Box", {"box", "gmsh"}), " Did you mean \"box\"?");
   EXPECT_EQ(rpc::word_remedy("ball", {"box", "gmsh"}), "");
@@ -242,6 +243,21 @@ TEST(UnknownName, OfBooksAndOtherProgramsIsTranslated)
   expect_named("Material->Loads=1", "In a deck that is \"Traction\".");
   expect_named("Traction->top->fy=1", "Did you mean \"Y\"?");
   expect_named("Traction->top->Pressure=1", "Write the components of the force per area, X, Y, Z");
+}
+
+TEST(UnknownName, OfASideThatAForceMovesIsADisplacementOrItsForce)
+{
+  ParameterList valid("deck"), entry, list;
+  rpc::set_field(entry, "X", "", "Displacement [m].");
+  rpc::set_field(entry, "Z", "", "Displacement [m].");
+  rpc::set_field(entry, "Force X", "", "Force on the whole side [N].");
+  rpc::set_named_entries(valid, "Dirichlet", entry, "Supports.");
+  for (const auto &[assignment, part] :
+       {std::pair("Dirichlet->top->Fx=1",
+                  "Did you mean \"Force X\", the force on the whole side, or \"X\", its displacement?"),
+        std::pair("Dirichlet->top->Force=1", "the force that moves the side as one rigid piece, Force X"),
+        std::pair("Dirichlet->top->px=1", "A load belongs into \"Traction\".")})
+    expect_error(ExitCode::bad_input, part, [&] { rpc::assign(list, valid, assignment); });
 }
 
 TEST(UnknownName, OfAComponentIsTakenByItsQuantity)

@@ -13,8 +13,9 @@ namespace rpc::contact
 Point unit_vector(const Teuchos::ParameterList &list, const std::string &name, const int dim, const std::string &path)
 {
   const auto &numbers = list.get<Teuchos::Array<double>>(name);
-  RPC_REQUIRE(numbers.size() == dim,
-              "deck: \"" << path << "->" << name << "\" must hold " << dim << " numbers, got " << numbers.size());
+  RPC_REQUIRE(numbers.size() == dim, "deck: \"" << path << "->" << name << "\" must hold " << dim << " numbers, got "
+                                                << numbers.size()
+                                                << (numbers.empty() ? ". It has no default: add it." : ""));
   Point given{};
   for (int c = 0; c < dim; ++c) {
     RPC_REQUIRE(std::isfinite(numbers[c]),
