@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How far the sides of a body have moved, in the JSON file: on any number of ranks the same, and what the deck prescribes."""
 
+import csv
 import json
 import unittest
 
@@ -52,6 +53,17 @@ class SideDisplacements(RpcTestCase):
         self.assertAlmostEqual(found["top"]["max"], 0.01, delta=1e-3)
         self.assertEqual(found["left"]["mean"][0], 0)
         self.assertLess(found["left"]["mean"][1], 0)
+
+    def test_of_load_steps_too_a_side_on_the_axis_has_the_mean_over_its_nodes(self):
+        steps = TUBE.replace("    bottom:", "    left: {X: 0.0}\n    bottom:") + "  Steps: {Times: [1.0, 2.0]}\n"
+        (self.folder / "tube.yaml").write_text(steps)
+        self.rpc("--input=tube.yaml", "--output=out")
+        with open(self.folder / "out" / "tube.history.csv", newline="") as file:
+            row = list(csv.DictReader(file))[-1]
+        column = {key.split(" ")[0]: float(value) for key, value in row.items() if key.startswith(("left_disp", "top_disp"))}
+        self.assertEqual(column["left_displacement_x"], 0)
+        self.assertLess(column["left_displacement_y"], 0)
+        self.assertAlmostEqual(column["top_displacement_y"], -0.02 / 3, delta=1e-14)
 
 
 if __name__ == "__main__":

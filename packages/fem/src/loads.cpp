@@ -284,6 +284,14 @@ double largest_of(const DeviceView<double *> &values)
   return std::max(largest, 0.);
 }
 
+/// @param measure  (facets * points), see facet_measure()   @param t  (facets * points, dim) traction [Pa]
+void add_load_of_side(const Discretization &d, const mesh::Side &side, const DeviceView<double *> &measure,
+                      const DeviceView<double **> &t, Vector &load)
+{
+  const NodeToCells node_to_facets = around_nodes(side.facets, d.mesh->num_owned_nodes());
+  add_load(side.facets, node_to_facets, d.reference.facet.value, measure, t, load); // paper (3), (2.5)
+}
+
 } // namespace
 
 void add_traction(const Discretization &d, const mesh::Side &side, const VectorField &traction,
@@ -294,10 +302,17 @@ void add_traction(const Discretization &d, const mesh::Side &side, const VectorF
   const BasisTable &table = d.reference.facet;
   const auto points = quadrature_points(mesh.coords, side.facets, table.value);
   const auto t = evaluate_vector(traction, points, parameter, mesh.comm());
-  const NodeToCells node_to_facets = around_nodes(side.facets, mesh.num_owned_nodes());
   const auto measure = facet_measure(d, side);
   require_area(max_all(mesh.comm(), largest_of(measure)), side, parameter);
-  add_load(side.facets, node_to_facets, table.value, measure, t, load); // paper (3), (2.5)
+  add_load_of_side(d, side, measure, t, load);
+}
+
+void add_node_areas(const Discretization &d, const mesh::Side &side, Vector &areas)
+{
+  const auto measure = facet_measure(d, side);
+  const DeviceView<double **> unit("rpc::fem::unit_traction", measure.extent(0), d.dim());
+  Kokkos::deep_copy(unit, 1.);
+  add_load_of_side(d, side, measure, unit, areas);
 }
 
 } // namespace rpc::fem

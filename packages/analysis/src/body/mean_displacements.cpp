@@ -12,14 +12,12 @@ namespace rpc::analysis
 namespace
 {
 
-/// (owned dofs) the area that each node stands for: the load of a unit traction. Points have none.
+/// (owned dofs) the area that each node of a side stands for, along each component. Points have none.
 RCP<Vector> areas_of(const fem::Discretization &d, const std::string &side)
 {
   const auto areas = Teuchos::rcp(new Vector(d.owned_dofs));
-  fem::VectorField unit;
-  for (int c = 0; c < d.dim(); ++c) unit[c] = ScalarField(1.);
   for (const mesh::Side &each : d.mesh->sides)
-    if (each.name == side) fem::add_traction(d, each, unit, side, *areas);
+    if (each.name == side) fem::add_node_areas(d, each, *areas);
   return areas;
 }
 

@@ -1,37 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/side_displacements.hpp"
 
-#include "rpc/fem/surface.hpp"
+#include "rpc/fem/elasticity.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace rpc::analysis
 {
-namespace
-{
-
-/// (owned nodes of a side) the area that each stands for: the integral of its shape function.
-std::map<LO, double> node_areas(const fem::Discretization &d, const mesh::Side &side)
-{
-  const auto facets = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), side.facets);
-  const auto measure = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), fem::facet_measure(d, side));
-  const auto value = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), d.reference.facet.value);
-  const std::size_t points = value.extent(0), owned = d.mesh->num_owned_nodes();
-  std::map<LO, double> areas;
-  for (std::size_t f = 0; f < facets.extent(0); ++f)
-    for (std::size_t a = 0; a < facets.extent(1); ++a) {
-      const LO node = facets(f, a);
-      if (static_cast<std::size_t>(node) >= owned) continue; // another rank counts it
-      double &area = areas[node];
-      for (std::size_t q = 0; q < points; ++q) area += measure(f * points + q) * value(q, a);
-    }
-  return areas;
-}
-
-} // namespace
 
 std::vector<SideDisplacement> side_displacements(const fem::Discretization &d, const Vector &u)
 {
@@ -42,7 +19,11 @@ std::vector<SideDisplacement> side_displacements(const fem::Discretization &d, c
   std::vector<double> own(width * sides.size(), 0), sums(own.size()), longest(sides.size(), 0), largest(sides.size());
   for (std::size_t s = 0; s < sides.size(); ++s) {
     double *const sum = &own[width * s];
-    for (const auto &[node, area] : node_areas(d, sides[s])) {
+    Vector areas(d.owned_dofs);
+    fem::add_node_areas(d, sides[s], areas);
+    const auto area_of = areas.getLocalViewHost(Tpetra::Access::ReadOnly);
+    for (const LO node : d.mesh->nodes_of(sides[s].name, "side_displacement")) {
+      const double area = area_of(dim * node, 0);
       double length = 0;
       for (int c = 0; c < dim; ++c) {
         const double x = displacement(dim * node + c, 0);

@@ -134,4 +134,8 @@ DeviceView<double ***> tractions_on(const Discretization &d, const mesh::Side &s
 void add_traction(const Discretization &d, const mesh::Side &side, const VectorField &traction,
                   const std::string &parameter, Vector &load);
 
+/// areas(ai) += int N_a, over a side, for each component i: the area that node a stands for [m^2]. On the axis of a body of revolution it is 0.
+/// Collective.
+void add_node_areas(const Discretization &d, const mesh::Side &side, Vector &areas);
+
 } // namespace rpc::fem
