@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "expect_error.hpp"
+#include "read_obstacle.hpp"
 #include "rpc/contact/between_nodes.hpp"
 #include "rpc/contact/surface/height_map.hpp"
 #include "rpc/contact/surface/sphere.hpp"
-#include "rpc/core/parameters.hpp"
 #include "touching_box.hpp"
 
 #include <Teuchos_Array.hpp>
@@ -46,16 +46,9 @@ Teuchos::ParameterList map_list(const double spacing, const int dim = 3)
   return list;
 }
 
-/// What a deck's list makes of a file with some bytes.
-Obstacle read(Teuchos::ParameterList list, const std::string &bytes, const int dim = 3)
+Obstacle read(const Teuchos::ParameterList &list, const std::string &bytes, const int dim = 3)
 {
-  validate(list, contact::valid_obstacle_parameters());
-  const auto parse = [](const std::string &text, const std::string &) {
-    return text.find('t') == std::string::npos ? ScalarField(std::stod(text))
-                                               : ScalarField(text, [](const Point &, double t) { return 2 * t; });
-  };
-  return contact::obstacle_options(list, dim, "Contact->Obstacle", parse,
-                                   [&](const std::string &, const std::string &) { return bytes; });
+  return read_obstacle(list, dim, bytes);
 }
 
 /// The upper side of a sphere of radius 1 below z = 0, whose top is at (0.5, 0.5).

@@ -2,6 +2,7 @@
 #include "rpc/contact/obstacle.hpp"
 
 #include "expect_error.hpp"
+#include "read_obstacle.hpp"
 #include "rpc/contact/surface/plane.hpp"
 #include "rpc/core/parameters.hpp"
 
@@ -23,14 +24,9 @@ using rpc::test::expect_error;
 
 using Numbers = Teuchos::Array<double>;
 
-Obstacle read(Teuchos::ParameterList list, const int dim = 2)
+Obstacle read(const Teuchos::ParameterList &list, const int dim = 2)
 {
-  validate(list, contact::valid_obstacle_parameters());
-  const auto parse = [](const std::string &text, const std::string &) {
-    return text.find('t') == std::string::npos ? ScalarField(std::stod(text))
-                                               : ScalarField(text, [](const Point &, double t) { return 2 * t; });
-  };
-  return contact::obstacle_options(list, dim, "Contact->Obstacle", parse);
+  return rpc::test::read_obstacle(list, dim);
 }
 
 Obstacle plane(const Numbers &point, const Numbers &normal)

@@ -2,8 +2,7 @@
 // Ellipsoid, cone, wedge, flat punch and torus as obstacles, and formulas of their surfaces that share nothing with the code.
 #pragma once
 
-#include "rpc/contact/obstacle.hpp"
-#include "rpc/core/parameters.hpp"
+#include "read_obstacle.hpp"
 
 #include <Teuchos_Array.hpp>
 #include <array>
@@ -19,13 +18,6 @@ using contact::Obstacle;
 using Numbers = Teuchos::Array<double>;
 
 constexpr double two_pi = 6.28318530717959;
-
-inline Obstacle read_obstacle(Teuchos::ParameterList list, const int dim)
-{
-  validate(list, contact::valid_obstacle_parameters());
-  const auto parse = [](const std::string &text, const std::string &) { return ScalarField(std::stod(text)); };
-  return contact::obstacle_options(list, dim, "Contact->Obstacle", parse);
-}
 
 inline Numbers numbers(const Point &x, const int dim)
 {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tools by the triangles of their surface: boxes, whose distances are known, and tori, whose meshes come near them.
 #include "expect_error.hpp"
-#include "rpc/contact/obstacle.hpp"
+#include "read_obstacle.hpp"
 #include "rpc/contact/surface/torus.hpp"
 #include "rpc/contact/surface/triangles.hpp"
-#include "rpc/core/parameters.hpp"
 
 #include <Teuchos_Array.hpp>
 #include <algorithm>
@@ -106,10 +105,7 @@ Obstacle read(const std::string &bytes, const std::function<void(Teuchos::Parame
   list.set("File", "tool.stl");
   list.set("Origin", Numbers(dim, 0.));
   if (change) change(list);
-  validate(list, contact::valid_obstacle_parameters());
-  const auto parse = [](const std::string &text, const std::string &) { return ScalarField(std::stod(text)); };
-  return contact::obstacle_options(list, dim, "Contact->Obstacle", parse,
-                                   [&](const std::string &, const std::string &) { return bytes; });
+  return rpc::test::read_obstacle(list, dim, bytes);
 }
 
 struct Draw {
