@@ -163,7 +163,7 @@ Solved galerkin_solution(const analysis::Problem &problem, const analysis::StepS
     const double left = r->norm2() / std::max(fem::internal_work(d, problem.model().materials, *u).force_norm, 1e-300);
     if (left <= wanted || pass == 4 || (pass > 0 && left > before / 2)) {
       if (!(left <= enough))
-        found.failure = "the elastic solve leaves " + std::to_string(left) + " of the forces out of balance";
+        found.failure = "the elastic solve leaves " + shown(left) + " of the forces out of balance";
       break;
     }
     before = left;
@@ -236,7 +236,7 @@ void require_covered(const analysis::Problem &problem, const analysis::Step &ste
   const double distortion = largest_distortion(in, d.mesh->element);
   require_of_deck(distortion <= 1e-9, "cells of " + d.mesh->element.name() +
                                           " are curved, or quadrilaterals whose opposite sides are not parallel (by " +
-                                          std::to_string(distortion) + " of a cell)");
+                                          shown(distortion) + " of a cell)");
   boundary_of(problem, step, in.facets, HostView<double *>("rpc::bound::none", step.contact.size()));
 }
 
@@ -309,7 +309,7 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   bound.lower = bound.upper - best;
   bound.energy_norm = std::sqrt(2 * best) + bound.moved;
   if (!(bound.imbalance <= 1e-8))
-    bound.missing = "cells are out of balance by " + std::to_string(bound.imbalance) + " of their forces";
+    bound.missing = "cells are out of balance by " + shown(bound.imbalance) + " of their forces";
   return bound;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <sstream>
 
 namespace rpc::bound
 {
@@ -167,7 +168,7 @@ void require_represented_gap(const contact::ContactOptions &options, const OnHos
               : std::optional<double>(field(at));
       const double scale = c.length[e] + std::abs(here);
       RPC_REQUIRE(distance && std::abs(*distance - here) <= 1e-10 * scale,
-                  not_covered(options, "at (" + std::to_string(x(at, 0)) + ", " + std::to_string(x(at, 1)) +
+                  not_covered(options, "at (" + shown(x(at, 0)) + ", " + shown(x(at, 1)) +
                                            ") the gap is another than between its nodes"));
     }
 }
@@ -299,6 +300,13 @@ BoundaryTractions with_pressure(const BoundaryTractions &loads, const std::vecto
     }
   Kokkos::deep_copy(all.load, load);
   return all;
+}
+
+std::string shown(const double value)
+{
+  std::ostringstream text;
+  text << value;
+  return text.str();
 }
 
 } // namespace rpc::bound

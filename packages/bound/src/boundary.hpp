@@ -5,6 +5,7 @@
 #include "equilibration.hpp"
 #include "rpc/analysis/run.hpp"
 
+#include <string>
 #include <vector>
 
 namespace rpc::bound
@@ -25,5 +26,8 @@ Boundary boundary_of(const analysis::Problem &problem, const analysis::Step &ste
 /// @param pressure  (sides; facets) Bernstein coefficients [Pa]
 BoundaryTractions with_pressure(const BoundaryTractions &loads, const std::vector<ContactFacets> &sides,
                                 const std::vector<std::vector<OfFacet>> &pressure);
+
+/// A number as messages show it, small ones too.
+std::string shown(double value);
 
 } // namespace rpc::bound
