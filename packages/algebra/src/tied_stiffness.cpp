@@ -71,22 +71,26 @@ std::vector<double> TiedStiffness::forces_of(const Vector &x) const
   return all;
 }
 
+void TiedStiffness::couple(const Vector &x, Vector &y) const
+{
+  const std::vector<double> value = means(tied_, x);
+  std::vector<double> force = forces_of(x);
+  for (int j = 0; j < tied_.size(); ++j) {
+    y.update(value[j], *force_[j], 1.);
+    for (int k = 0; k < tied_.size(); ++k) force[j] += stiffness(j, k) * value[k];
+    force[j] /= static_cast<double>(tied_.count[j]);
+  }
+  set_members(tied_, force, y);
+}
+
 void TiedStiffness::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, const double alpha,
                           const double beta) const
 {
   RPC_REQUIRE(x.getNumVectors() == 1, "TiedStiffness: products with one vector at a time");
   const auto column = x.getVector(0);
-  const Vector &u = *column;
-  Vector product(u.getMap());
-  K_->apply(u, product);
-  const std::vector<double> value = means(tied_, u);
-  std::vector<double> force = forces_of(u);
-  for (int j = 0; j < tied_.size(); ++j) {
-    product.update(value[j], *force_[j], 1.);
-    for (int k = 0; k < tied_.size(); ++k) force[j] += stiffness(j, k) * value[k];
-    force[j] /= static_cast<double>(tied_.count[j]);
-  }
-  set_members(tied_, force, product);
+  Vector product(column->getMap());
+  K_->apply(*column, product);
+  couple(*column, product);
   y.update(alpha, product, beta);
 }
 

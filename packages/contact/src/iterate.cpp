@@ -225,12 +225,8 @@ GO Iterate::update_stiffness(const Vector &u)
 void Iterate::apply_hessian(const Vector &d, Vector &Hd) const
 {
   hessian_->apply(d, Hd);
-  if (tied_.is_null()) return;
-  Vector Kd(d.getMap()); // with prescribed unknowns in place of the tied ones
-  hessian_->apply_base(d, Kd);
-  Hd.update(-1., Kd, 1.);
-  tied_->apply(d, Kd);
-  Hd.update(1., Kd, 1.);
+  if (!tied_.is_null())
+    tied_->couple(d, Hd); // contact adds nothing at members: prescribed unknowns are no direction to push in
 }
 
 void Iterate::hold_by_contact()

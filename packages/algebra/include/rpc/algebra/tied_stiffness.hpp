@@ -45,6 +45,9 @@ public:
   RCP<const Map> getRangeMap() const override { return K_->getRangeMap(); }
   bool hasTransposeApply() const override { return false; }
 
+  /// y becomes A x from K x, or, with an update of K that is 0 at members, the product with the sum of A and the update.
+  void couple(const Vector &x, Vector &y) const;
+
   const TiedUnknowns &tied() const { return tied_; }
   /// A group's column of C, 0 at members.
   const Vector &force(const int group) const { return *force_[group]; }
