@@ -184,7 +184,7 @@ StepSolution LoadHistory::advance_in_parts(const double t, const Halvings &left,
   const bool from_rest_before = last_.from_rest;
   StepOptions options = options_;
   options.low_penalties = left.failures == 0;         // what else could be tried is to halve the step
-  options.from_rest = left.failures == max_halvings_; // parts have solutions near by
+  options.from_rest = left.failures == max_halvings_; // parts of a step that failed have solutions near by
   StepSolution s = solve(t, options, progress, now);
   const double from = before.memory ? before.memory->time : time_at_rest(t);
   const double half = 0.5 * (from + t);

@@ -89,11 +89,12 @@ std::string HeightMap::told(const std::string &unit) const
   const auto size = grid->extent();
   const auto &spacing = grid->spacing();
   text << what << ", ";
-  if (grid->is_profile())
+  if (grid->is_profile()) {
     text << size[0] << " " << unit << " long, spacing " << spacing[0];
-  else
+  } else {
     text << size[0] << " x " << size[1] << " " << unit << ", spacing " << spacing[0];
-  if (!grid->is_profile() && spacing[0] != spacing[1]) text << " x " << spacing[1];
+    if (spacing[0] != spacing[1]) text << " x " << spacing[1];
+  }
   const Interval heights = grid->heights();
   text << " " << unit << "; heights from " << heights.low << " to " << heights.high << " " << unit << ", rms height "
        << grid->rms_height() << " " << unit << ", rms slope " << grid->rms_slope();
