@@ -18,7 +18,7 @@ import scene as scenes
 from outputs import Run
 
 TIME_LIMIT = 120  # of one run, of processor time of each rank, whatever else the machine does [s]
-GIVEN_UP = 1800  # [s]
+GIVEN_UP = 900  # [s] of a run that waits: half of what the array may take, so that its row is named
 OUT_OF_TIME = (-signal.SIGXCPU, 128 + signal.SIGXCPU)  # a process by itself, and in mpiexec
 FINER_DOFS = 8  # a finer mesh may have so many times the unknowns
 TO_REST = {"one", "unload", "slide"}  # histories that are also run with a finer mesh where meshes adapt

@@ -144,9 +144,9 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
     if (!coarse) break;
     mesh = coarse;
     const fem::Discretization &d = mesh->discretization();
-    const auto prescribed_here = mesh->node_of_finer().extent(0) > 0
-                                     ? at_vertices(prescribed, mesh->node_of_finer(), dim)
-                                     : fem::dirichlet_dofs(d, held).fixed;
+    const auto &node_of_finer = mesh->node_of_finer();
+    const auto prescribed_here =
+        node_of_finer ? at_vertices(prescribed, *node_of_finer, dim) : fem::dirichlet_dofs(d, held).fixed;
     levels.level.push_back(level_on(d, model, prescribed_here, mesh->to_finer()));
     thin = thin_direction(*mesh);
   }

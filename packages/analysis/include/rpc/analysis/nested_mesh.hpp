@@ -5,6 +5,7 @@
 #include "rpc/mesh/box.hpp"
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace rpc::analysis
@@ -42,8 +43,9 @@ public:
   bool is_finest() const { return to_finer_.is_null(); }
   /// (owned nodes of the finer mesh x owned nodes) Null for the finest mesh.
   const RCP<const CrsMatrix> &to_finer() const { return to_finer_; }
-  /// (overlap nodes) The node of the finer mesh at the same place; empty unless this is the mesh of order 1 on the same cells.
-  const DeviceView<LO *> &node_of_finer() const { return node_of_finer_; }
+  /// (overlap nodes) The node of the finer mesh at the same place; none unless this is the mesh of order 1 on the same cells. A rank
+  /// without a cell has an empty view.
+  const std::optional<DeviceView<LO *>> &node_of_finer() const { return node_of_finer_; }
 
 private:
   /// The parents of a refined mesh, which the mesh of order 1 on its cells shares.
@@ -56,7 +58,7 @@ private:
 
   fem::Discretization discretization_;
   RCP<const CrsMatrix> to_finer_;
-  DeviceView<LO *> node_of_finer_;
+  std::optional<DeviceView<LO *>> node_of_finer_;
   std::shared_ptr<Family> family_; // null if the mesh was not refined
   mutable bool asked_ = false;     // for a coarser one
   mutable std::shared_ptr<const NestedMesh> coarser_;
