@@ -158,16 +158,12 @@ DeviceView<double ***> unset_blocks(const LO n, const int dim)
 /// The inverses, which `changing` nodes do not share. Collective.
 NodeBlocks inverses(const Comm &comm, const NodeBlocks &D, const DeviceView<LO *> &changing)
 {
-  if (D.place.extent(0) == 0 || changing.extent(0) == 0) {
-    const NodeBlocks inverse{D.place, unset_blocks(D.num_blocks(), D.dim())};
-    invert(comm, {}, D.block, inverse.block);
-    return inverse;
-  }
-  const LO shared = D.num_blocks(), own = static_cast<LO>(changing.extent(0));
+  const LO shared = D.num_blocks(), own = D.place.extent(0) > 0 ? static_cast<LO>(changing.extent(0)) : 0;
   const int dim = D.dim();
-  const NodeBlocks inverse{DeviceView<LO *>("rpc::solver::place_of_inverse", D.num_nodes()),
+  const NodeBlocks inverse{own > 0 ? DeviceView<LO *>("rpc::solver::place_of_inverse", D.num_nodes()) : D.place,
                            unset_blocks(shared + own, dim)};
   invert(comm, {}, D.block, inverse.block);
+  if (own == 0) return inverse;
   Kokkos::deep_copy(inverse.place, D.place);
   Kokkos::parallel_for(
       "rpc::solver::own_inverses", device_range(own), KOKKOS_LAMBDA(const LO i) {
