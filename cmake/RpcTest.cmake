@@ -62,6 +62,21 @@ set(rpc_ranks_environment
     OMPI_MCA_mpi_yield_when_idle=1
     OMPI_MCA_btl=^ofi) # no network cards: tests run on one host, and Open MPI 6 sleeps for a second while it looks for cards
 
+# What shows that all ranks make the same collective calls, see collectives.c.
+if(RPC_TRILINOS_HAS_MPI)
+  find_package(MPI QUIET COMPONENTS C)
+endif()
+if(RPC_TRILINOS_HAS_MPI AND MPI_C_FOUND)
+  find_package(Threads REQUIRED)
+  add_library(rpc_collectives MODULE ${PROJECT_SOURCE_DIR}/test/support/collectives.c)
+  add_executable(rpc_different_calls ${PROJECT_SOURCE_DIR}/test/support/different_calls.c)
+  target_compile_options(rpc_collectives PRIVATE -Wall -Wextra)
+  target_link_libraries(rpc_collectives PRIVATE MPI::MPI_C Threads::Threads ${CMAKE_DL_LIBS})
+  target_link_libraries(rpc_different_calls PRIVATE MPI::MPI_C)
+  set_target_properties(rpc_collectives PROPERTIES LIBRARY_OUTPUT_DIRECTORY $<1:${PROJECT_BINARY_DIR}>)
+  add_dependencies(rpc_tests rpc_collectives rpc_different_calls)
+endif()
+
 # rpc_append_session_folder(<list> <test>): appends to a list of environment variables a folder of Open MPI's for one test. Its own in /tmp
 # is the same for all runs on a host, and of two that start or end at once one may fail.
 macro(rpc_append_session_folder list test)
