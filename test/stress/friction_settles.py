@@ -22,6 +22,7 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "regression"))
 from sheared import SHEARED  # noqa: E402
 
 HISTORIES = {  # (seed, number): (most Newton steps of a step, what was wrong)
+    (71779, 162): (15, "plane, a corner: what penalties left of a node's distance from one side was slip along the other (144 steps in 9 parts)"),
     (71779, 123): (20, "space, a point that cannot stick: its multiplier lagged behind the direction of its slip (107 steps)"),
     (90419, 123): (15, "plane: choices after a multiplier update counted r v twice (18 steps)"),
     (90419, 627): (15, "plane, a point that cannot stick: it could not turn (28 steps in 3 parts)"),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/contact_state.hpp"
 
+#include "rpc/contact/law/judgement.hpp"
 #include "rpc/contact/node_columns.hpp"
 #include "rpc/contact/result.hpp"
 #include "rpc/fem/interpolation.hpp"
@@ -31,6 +32,23 @@ ContactState with_weightless(ContactState state, const ContactNodes &c, const fe
   Kokkos::fence();
   state.multiplier.normal = lambda;
   return state;
+}
+
+RCP<Vector> on_foundation(const ContactNodes &points, const ContactState &state)
+{
+  const ContactNodes c = points;
+  const auto p = state.multiplier.normal;
+  auto u = rcp(new Vector(*state.displacement, Teuchos::Copy));
+  const auto x = device_write(*u);
+  for_each_point_by_group( // a node of two sides is moved for one after the other
+      "rpc::contact::on_foundation", points, KOKKOS_LAMBDA(const LO i) {
+        const Foundation f = c.law(i);
+        if (c.fixed(i) || f.compliance > 0 || state_of_pressure(p(i), f) != State::closed) return;
+        const double move = penetration(c, i, x) / squared_length(c, i);
+        for (int k = 0; k < c.dim; ++k) x(c.dof(i, k)) -= move * c.direction(i, k);
+      });
+  Kokkos::fence();
+  return u;
 }
 
 ContactState interpolated(const Operator &interpolation, const ContactNodes &coarse, const ContactState &state,

@@ -271,6 +271,7 @@ void LoadHistory::remember(const double t, const std::vector<contact::ContactOpt
   remember_dents(*problem_, sides, step.contact, memory(), s, now);
   now.time = t;
   now.displacement = s.u;
+  if (step.contact.friction.anywhere) now.displacement = contact::on_foundation(step.contact, s.state); // (12.14)
   now.pressure = contact::node_columns(step.contact, s.contact.pressure, owned_nodes);
   now.gap = contact::node_columns(step.contact, moving_gap(*problem_, step.contact, s.contact.dent), owned_nodes);
   now.energies = energies_after(*problem_, t, s, memory(), kept_.last_forces.get(), *forces);

@@ -36,6 +36,10 @@ struct ContactState {
 ContactState with_weightless(ContactState state, const ContactNodes &c, const fem::Discretization &d,
                              const std::vector<const mesh::Side *> &sides);
 
+/// A copy of the displacement in which closed points of a foundation without a spring lie on it. What a penalty leaves of their distance would
+/// be slip of a node that another side's friction holds along this one's normal.                                        (12.14)
+RCP<Vector> on_foundation(const ContactNodes &points, const ContactState &state);
+
 /// The state on another mesh of the same scene: displacement and multipliers by interpolation, side by side, without an active
 /// set. Collective.
 /// @param interpolation  (fine owned nodes x coarse owned nodes), such as fem::interpolation()
