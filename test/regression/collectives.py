@@ -3,6 +3,7 @@
 
 import json
 import os
+import re
 import subprocess
 import time
 import unittest
@@ -47,13 +48,15 @@ class Collectives(RpcTestCase):
         self.assertGreater(int(counts.read_text()), 10)
 
     def test_a_call_that_differs_is_found(self):
-        for fault, code in (("none", 0), ("call", DIFFERS), ("size", DIFFERS), ("place", DIFFERS), ("wait", WAITS_FOR_EVER)):
+        for fault, code in (("none", 0), ("call", DIFFERS), ("size", DIFFERS), ("place", DIFFERS), ("throw", DIFFERS), ("wait", WAITS_FOR_EVER)):
             with self.subTest(fault):
                 start = time.monotonic()
                 result = subprocess.run([*LAUNCH, os.environ["RPC_DIFFERENT_CALLS"], fault], capture_output=True, text=True, timeout=300,
                                         stdin=subprocess.DEVNULL, env={**os.environ, **LOADED, "RPC_COLLECTIVES_WAIT": "2"}, check=False)
                 self.assertEqual(result.returncode, code, result.stderr)
-                self.assertEqual(result.stderr.count("collectives: rank"), RANKS if code else 0, result.stderr)
+                told = {f"collectives: rank {rank}: " for rank in range(RANKS if code else 0)}
+                self.assertEqual(set(re.findall(r"collectives: rank \d+: ", result.stderr)), told, result.stderr)
+                self.assertEqual("thrown" in result.stderr, fault == "throw", result.stderr)
                 self.assertLess(time.monotonic() - start, 100)
 
     def test_all_ranks_call_the_same(self):

@@ -20,7 +20,7 @@
 #include <unistd.h>
 #include <unwind.h>
 
-enum { most_frames = 128, differs = 97, waits_for_ever = 98, words = 8 };
+enum { most_frames = 128, differs = 97, waits_for_ever = 98 };
 
 static uintptr_t program_first, program_last, program_base; // where the program's code lies
 static int shadow_key = MPI_KEYVAL_INVALID;                 // of a communicator: its own for comparisons
@@ -29,6 +29,8 @@ static volatile long compared;
 static double longest_wait; // [s]
 static int this_rank;
 static pthread_t main_thread;
+static void *thrown_at[most_frames]; // the call stack of the last exception
+static volatile int thrown;          // its size
 
 static double now(void)
 {
@@ -54,6 +56,12 @@ static int is_program(const void *const frame)
   return (uintptr_t)frame >= program_first && (uintptr_t)frame < program_last;
 }
 
+static const void *own_base(void)
+{
+  Dl_info info;
+  return dladdr(&thrown_at, &info) ? info.dli_fbase : NULL;
+}
+
 /// Cuts the arguments off a function's name: " at file:line" follows.
 static void shorten(char *const name)
 {
@@ -65,11 +73,9 @@ static void shorten(char *const name)
     }
 }
 
-/// One line for each of the program's frames, with the names of functions where addr2line is at hand, and the library that it calls.
-static void print_stack(const char *const title)
+/// One line for each of the program's frames, with the names of functions where addr2line is at hand, and for each of its libraries'.
+static void print_frames(const char *const title, void *const *const frames, const int count)
 {
-  void *frames[most_frames];
-  const int count = backtrace(frames, most_frames);
   static char text[65536], command[16384], program[4096];
   size_t used = snprintf(text, sizeof text, "collectives: rank %d: %s\n", this_rank, title);
   const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
@@ -83,24 +89,32 @@ static void print_stack(const char *const title)
   FILE *const names = popen(command, "r");
   char name[4096];
   for (int k = 0; k < count && used < sizeof text - 1024; ++k) {
-    if (!is_program(frames[k])) {
-      Dl_info info;
-      if (dladdr(frames[k], &info) && info.dli_fname)
-        used += snprintf(text + used, sizeof text - used, "    %.80s(+0x%lx) %.120s\n",
-                         strrchr(info.dli_fname, '/') ? strrchr(info.dli_fname, '/') + 1 : info.dli_fname,
-                         (unsigned long)((uintptr_t)frames[k] - (uintptr_t)info.dli_fbase),
-                         info.dli_sname ? info.dli_sname : "");
+    if (is_program(frames[k])) {
+      if (!names || !fgets(name, sizeof name, names)) name[0] = 0;
+      name[strcspn(name, "\n")] = 0;
+      shorten(name);
+      used += snprintf(text + used, sizeof text - used, "  +0x%lx %.400s\n",
+                       (unsigned long)((uintptr_t)frames[k] - program_base), name);
       continue;
     }
-    if (!names || !fgets(name, sizeof name, names)) name[0] = 0;
-    name[strcspn(name, "\n")] = 0;
-    shorten(name);
-    used += snprintf(text + used, sizeof text - used, "  rpc +0x%lx %.400s\n",
-                     (unsigned long)((uintptr_t)frames[k] - program_base), name);
+    Dl_info info;
+    if (!dladdr(frames[k], &info) || !info.dli_fname || info.dli_fbase == own_base()) continue;
+    const char *const slash = strrchr(info.dli_fname, '/');
+    used += snprintf(text + used, sizeof text - used, "    %.80s(+0x%lx) %.120s\n", slash ? slash + 1 : info.dli_fname,
+                     (unsigned long)((uintptr_t)frames[k] - (uintptr_t)info.dli_fbase),
+                     info.dli_sname ? info.dli_sname : "");
   }
   if (names) pclose(names);
   fwrite(text, 1, used, stderr);
   fflush(stderr);
+}
+
+/// Where this rank is, and where it has thrown last: a rank that throws alone differs only where it has been caught.
+static void print_stack(const char *const title)
+{
+  void *frames[most_frames];
+  print_frames(title, frames, backtrace(frames, most_frames));
+  if (thrown > 0) print_frames("has thrown its last exception here", thrown_at, thrown);
 }
 
 static void print_where(const int signal)
@@ -230,6 +244,15 @@ static long long sum_of_counts(const MPI_Comm comm, const int *const counts, con
   uint64_t hash = 1;
   for (int k = 0; k < ranks; ++k) hash = mixed(hash, (uint64_t)bytes(counts[k], type));
   return (long long)hash;
+}
+
+/// C++ calls this for each exception.
+void __attribute__((noreturn)) __cxa_throw(void *exception, void *type, void (*destructor)(void *))
+{
+  static void (*of_library)(void *, void *, void (*)(void *)) __attribute__((noreturn));
+  if (!of_library) *(void **)&of_library = dlsym(RTLD_NEXT, "__cxa_throw");
+  if (shadow_key != MPI_KEYVAL_INVALID) thrown = backtrace(thrown_at, most_frames);
+  of_library(exception, type, destructor);
 }
 
 #define COMPARE(comm, ...)                                                                                             \
