@@ -53,6 +53,12 @@ public:
     if (end > numbers.size()) refuse();
   }
 
+  [[noreturn]] static void refuse()
+  {
+    throw Error(ExitCode::bad_input, "restart: the checkpoint is damaged: its dents are not what was written. Take an "
+                                     "older one, or start from the first step.");
+  }
+
   bool at_end() const { return at_ == end_; }
   double number()
   {
@@ -75,12 +81,6 @@ public:
   }
 
 private:
-  [[noreturn]] static void refuse()
-  {
-    throw Error(ExitCode::bad_input, "restart: the checkpoint is damaged: its dents are not what was written. Take an "
-                                     "older one, or start from the first step.");
-  }
-
   const std::vector<double> &numbers_;
   std::size_t at_, end_;
 };
@@ -128,12 +128,15 @@ std::vector<FoundationDents> joined_parts(const std::vector<double> &numbers)
     const std::size_t length = Reader(numbers, at, numbers.size()).count();
     Reader reader(numbers, at + 1, at + 1 + length);
     const std::size_t foundations = reader.count();
+    if (at > 0 && foundations != joined.size()) Reader::refuse(); // all parts have the same sheets
     joined.resize(foundations);
     sheets.resize(foundations);
     for (std::size_t k = 0; k < foundations; ++k) {
       joined[k].deepest = reader.number();
       joined[k].volume = reader.number();
-      sheets[k].resize(reader.count());
+      const std::size_t count = reader.count();
+      if (at > 0 && count != sheets[k].size()) Reader::refuse();
+      sheets[k].resize(count);
       for (DentSheet &sheet : sheets[k]) {
         DentSheet part = sheet_from(reader);
         if (sheet.facet_node.empty() && sheet.dent.empty())
@@ -142,6 +145,7 @@ std::vector<FoundationDents> joined_parts(const std::vector<double> &numbers)
           add_part(sheet, part);
       }
     }
+    if (!reader.at_end()) Reader::refuse();
     at += 1 + length;
   }
   for (std::size_t k = 0; k < joined.size(); ++k)
