@@ -43,7 +43,7 @@ RCP<Vector> on_foundation(const ContactNodes &points, const ContactState &state)
   for_each_point_by_group( // a node of two sides is moved for one after the other
       "rpc::contact::on_foundation", points, KOKKOS_LAMBDA(const LO i) {
         const Foundation f = c.law(i);
-        if (c.fixed(i) || f.compliance > 0 || state_of_pressure(p(i), f) != State::closed) return;
+        if (c.fixed(i) || !leaves_pressure_open(f) || state_of_pressure(p(i), f) != State::closed) return;
         const double move = penetration(c, i, x) / squared_length(c, i);
         for (int k = 0; k < c.dim; ++k) x(c.dof(i, k)) -= move * c.direction(i, k);
       });
