@@ -113,7 +113,7 @@ struct StepRules {
   // Predictions
   Rule<double> near_equilibrium{1e-7, "step.near_equilibrium",
                                 "unbalanced forces over the load, residual of the contact law: no prediction is needed [-]", "not measured"};
-  Rule<GO> least_nodes_predicted{500, "step.least_nodes_predicted", "nodes below which a prediction costs as much as a solution [-]", "not measured"};
+  Rule<GO> least_nodes_predicted{500, "step.least_nodes_predicted", "nodes below which a prediction costs as much as a solution without friction [-]", "not measured"};
   Rule<GO> fewest_points_telling{50, "step.fewest_points_telling", "contact points of a coarser mesh that tells which method to begin with [-]",
                                  "theory.md (5.11)"};
   Rule<double> boundary{0.65, "step.boundary", "growth of cells over that by numbers of nodes: boundaries have more [-]", "not measured"};
