@@ -215,9 +215,9 @@ minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options
   if (solver::takes_loop(options.newton)) {
     const Vector start(u, Teuchos::Copy);
     const Iterate::Dual dual = iterate.dual();
-    // With pressures for multipliers r v counts twice, and v may turn its sign at each update. Choices settle from them at times, and at times only
-    // from the multipliers before: in turn.
-    if (!last.confirmed && iteration % 2 == 1) iterate.take_dual(last.dual);
+    // With pressures for multipliers r v counts twice, and v may turn its sign at each update. Choices settle from the multipliers before as a
+    // rule, and at times only from the pressures: in turn.
+    if (!last.confirmed && iteration % 2 == 0) iterate.take_dual(last.dual);
     ActiveSetLoop choices(iterate, active_set_tolerances(options), ActiveSetLoop::Then::nothing);
     const auto tried = run(std::ref(choices), most);
     if (choices.confirmed()) return {tried.converged, tried.steps, tried.reason, true};
