@@ -61,6 +61,8 @@ json to_json(const StepRecord &r, const ResultScope &scope)
                 {"side_forces", r.side_forces},
                 {"displacements", r.displacements},
                 {"reactions", r.reactions},
+                {"rigid_motions", r.rigid_motions},
+                {"rigid_forces", r.rigid_forces},
                 {"work", kept_numbers(analysis::step_work, r, scope)},
                 {"from_rest", r.from_rest},
                 {"seconds", r.seconds}};
@@ -78,6 +80,8 @@ StepRecord record_from(const json &j, const ResultScope &scope)
   r.side_forces = j.at("side_forces").get<std::vector<std::array<double, 3>>>();
   r.displacements = j.at("displacements").get<std::vector<std::array<double, 3>>>();
   r.reactions = j.at("reactions").get<std::vector<std::array<double, 3>>>();
+  r.rigid_motions = j.value("rigid_motions", r.rigid_motions); // older files have no rigid sides
+  r.rigid_forces = j.value("rigid_forces", r.rigid_forces);
   take_numbers(j.at("work"), analysis::step_work, r, scope);
   for (const auto &q : defined_numbers(analysis::step_parts, scope)) r.*q.value = j.at(q.key);
   r.from_rest = j.value("from_rest", false);

@@ -31,7 +31,7 @@ constexpr double rounding = 1e-12;
 /// default.
 bool has_free_names(const std::string &place)
 {
-  return place == "Dirichlet" || place == "Traction" || place == "Contact->Sides";
+  return place == "Dirichlet" || place == "Rigid" || place == "Traction" || place == "Contact->Sides";
 }
 
 /// "name=value;" and "name{...}" of a part of a deck.

@@ -98,10 +98,10 @@ std::string force_per_area_hint(const Scene &scene)
 std::vector<std::string> notes_on_deck(const Teuchos::ParameterList &deck, const Scene &scene)
 {
   std::vector<std::string> notes;
-  for (const char *const part : {"Dirichlet", "Traction"})
+  for (const char *const part : {"Dirichlet", "Rigid", "Traction"})
     if (!deck.getEntry(part).isDefault() && deck.sublist(part).numParams() == 0)
       notes.push_back("\"" + std::string(part) + "\" of the deck has no entries: nothing is " +
-                      (part == std::string("Dirichlet") ? "held" : "loaded") + " by it");
+                      (part == std::string("Traction") ? "loaded" : "held") + " by it");
   if (scene.model.contact.empty() && deck.sublist("Contact").getEntry("Side").isDefault())
     notes.emplace_back("the deck has no \"Contact\": the body meets no foundation. \"Contact->Side\" names the side "
                        "that may touch one");

@@ -20,6 +20,8 @@ namespace
 constexpr double notable_imbalance = 0.01;
 // Beyond it the terms that small strains leave out are a fifth of those that count.
 constexpr double notable_strain = 0.2;
+// Beyond it the length of an arm that turns by theta, sqrt(1 + theta^2), is off by half a percent [rad].
+constexpr double notable_rotation = 0.1;
 // Of the mean unit normal of a side, less than 1: the normals of a side that is as good as flat are within 5 degrees of each other.
 constexpr double notable_bend = 1e-3;
 
@@ -53,6 +55,35 @@ std::string strain_note(const Scene &scene, const analysis::Solution &s)
        << ": small strains are assumed, and results where strains exceed " << notable_strain << " are rough";
   if (const std::string load = force_per_area_hint(scene); !load.empty()) note << ". " << load;
   return note.str();
+}
+
+/// Rigid sides that turn by what small rotations do not describe, of all steps.                                     (2.9b)
+std::string rotation_note(const Scene &scene, const analysis::Solution &s)
+{
+  double most = notable_rotation;
+  std::ostringstream where;
+  const auto look = [&](const std::vector<fem::SixNumbers> &motions, const std::string &when) {
+    std::size_t j = 0;
+    for (const auto &condition : scene.model.dirichlet) {
+      if (!condition.rigid || j >= motions.size()) continue;
+      const double angle = std::hypot(motions[j][3], motions[j][4], motions[j][5]);
+      ++j;
+      if (!(angle > most)) continue;
+      most = angle;
+      where.str("");
+      where << "the rigid side \"" << condition.name << "\" turns by " << std::setprecision(3) << angle << " rad"
+            << when;
+    }
+  };
+  look(s.rigid_motions, "");
+  for (const auto &step : s.history) {
+    std::ostringstream when;
+    when << " at t = " << step.time;
+    look(step.rigid_motions, when.str());
+  }
+  if (where.str().empty()) return "";
+  where << ": rotations are assumed to be small, and above " << notable_rotation << " rad results are rough";
+  return where.str();
 }
 
 /// Penalties of the deck that were raised for friction.                                                            (12.12b)
@@ -236,7 +267,8 @@ std::vector<std::string> notes_on_mesh(const Scene &scene, const fem::Discretiza
 std::vector<std::string> notes_on_results(const Scene &scene, const Solution &s)
 {
   std::vector<std::string> notes;
-  for (const std::string &note : {balance_note(s), strain_note(scene, s), penalty_note(s), jump_note(s)})
+  for (const std::string &note :
+       {balance_note(s), strain_note(scene, s), rotation_note(scene, s), penalty_note(s), jump_note(s)})
     if (!note.empty()) notes.push_back(note);
   return notes;
 }

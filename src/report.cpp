@@ -273,8 +273,9 @@ void print_accuracy(std::ostream &out, const Scene &scene, const Solution &s)
 {
   print_bound(out, scene, s);
   const auto &conditions = scene.model.dirichlet;
-  if (std::any_of(conditions.begin(), conditions.end(), [](const auto &each) { return each.is_moved(); })) {
-    print_text(out, "errors", "not estimated where a force moves a side");
+  if (std::any_of(conditions.begin(), conditions.end(),
+                  [](const auto &each) { return each.is_moved() || each.rigid; })) {
+    print_text(out, "errors", "not estimated where a force moves a side, or a side is held rigid");
     return;
   }
   if (!s.estimate) {

@@ -46,6 +46,19 @@ std::string text_of(const Teuchos::ParameterList &list)
   return text.str();
 }
 
+/// Rigid sides are conditions as those of `Dirichlet` are, and have results by the same names.
+void add_rigid_sides(analysis::Model &model, const Teuchos::ParameterList &list, const int dim,
+                     const FieldParser &parse)
+{
+  for (const auto &rigid : fem::rigid_options(list, dim, model.kinematics, parse)) {
+    for (const auto &other : model.dirichlet)
+      RPC_REQUIRE(other.name != rigid.name, "deck: \"" << other.path() << "\" and \"" << rigid.path()
+                                                       << "\" must have different names, for results go by them. "
+                                                          "Rename one, and give it a \"Side\".");
+    model.dirichlet.push_back(rigid);
+  }
+}
+
 } // namespace
 
 Teuchos::ParameterList valid_deck()
@@ -60,6 +73,7 @@ Teuchos::ParameterList valid_deck()
   valid.sublist("Mesh") = mesh::valid_parameters();
   valid.sublist("Material") = fem::valid_material_parameters();
   valid.sublist("Dirichlet") = fem::valid_dirichlet_parameters();
+  valid.sublist("Rigid") = fem::valid_rigid_parameters();
   valid.sublist("Traction") = fem::valid_traction_parameters();
   valid.sublist("Body Force") = fem::valid_body_force_parameters();
   valid.sublist("Contact") = contact::valid_contact_parameters();
@@ -103,6 +117,7 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   scene.model.kinematics = fem::kinematics_option(deck.get<std::string>("Kinematics"), dim);
   scene.model.materials = fem::material_options(deck.sublist("Material"));
   scene.model.dirichlet = fem::dirichlet_options(deck.sublist("Dirichlet"), dim, parse);
+  add_rigid_sides(scene.model, deck.sublist("Rigid"), dim, parse);
   scene.model.tractions = fem::traction_options(deck.sublist("Traction"), dim, parse);
   scene.model.body_force = fem::body_force_options(deck.sublist("Body Force"), dim, parse);
   const FileReader of_root = file_reader_of_root(std::filesystem::path(deck_path).parent_path().string(), comm);
@@ -119,6 +134,7 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   scene.identity.emplace_back("Kinematics", deck.get<std::string>("Kinematics"));
   for (const char *const part : {"Mesh", "Material", "Dirichlet", "Traction", "Body Force", "Contact"})
     scene.identity.emplace_back(part, text_of(deck.sublist(part)));
+  if (deck.sublist("Rigid").numParams() > 0) scene.identity.emplace_back("Rigid", text_of(deck.sublist("Rigid")));
   if (!files.empty()) scene.identity.emplace_back("Contents of files", files);
   scene.steps = analysis::steps_options(deck.sublist("Steps"));
   RPC_REQUIRE(!scene.has_steps() || deck.getEntry("Time").isDefault(),

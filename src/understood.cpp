@@ -75,10 +75,28 @@ std::string material_text(const fem::Material &material, const std::string &stre
          ", nu = " + plain_number(material.poissons_ratio);
 }
 
+/// "as one rigid piece; Y by Force Y = -20; Rotation Z = 0; X free of force".
+std::string rigid_text(const fem::RigidMotions &rigid)
+{
+  std::vector<std::string> parts{"as one rigid piece"};
+  for (const int k : rigid.motions) {
+    const std::string motion = fem::name_of_motion(k);
+    std::vector<std::string> by;
+    if (rigid.force[k]) by.push_back(fem::name_of_force(k) + " = " + field_words(*rigid.force[k]));
+    if (rigid.stiffness[k] > 0) by.push_back(fem::name_of_stiffness(k) + " = " + plain_number(rigid.stiffness[k]));
+    if (rigid.displacement[k])
+      parts.push_back(motion + " = " + field_words(*rigid.displacement[k]));
+    else
+      parts.push_back(by.empty() ? motion + " free of force" : motion + " by " + joined_by(by, " and "));
+  }
+  return joined_by(parts, ", ");
+}
+
 /// What a condition prescribes: "X = 0, Y = -0.1*t".
 std::string prescribed_text(const fem::DirichletCondition &condition)
 {
   std::vector<std::string> parts;
+  if (condition.rigid) return rigid_text(*condition.rigid);
   for (int c = 0; c < 3; ++c)
     if (condition.displacement[c])
       parts.push_back(std::string(component_names[c]) + " = " + field_words(*condition.displacement[c]));

@@ -5,6 +5,8 @@
 #include "rpc/core/on_root.hpp"
 #include "rpc/io/contact_csv.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <sstream>
 #include <utility>
 
@@ -19,6 +21,16 @@ auto count_columns(const ResultScope &scope)
   std::vector<Quantity<analysis::StepRecord, int>> counts(analysis::step_parts.begin(), analysis::step_parts.end());
   counts.insert(counts.end(), analysis::step_work.begin(), analysis::step_work.end());
   return history_columns(counts, scope);
+}
+
+/// The rotations that a condition has: those of a rigid side.
+std::vector<int> rotations_of(const fem::DirichletCondition &condition)
+{
+  std::vector<int> rotations;
+  if (condition.rigid)
+    std::copy_if(condition.rigid->motions.begin(), condition.rigid->motions.end(), std::back_inserter(rotations),
+                 [](const int motion) { return motion >= 3; });
+  return rotations;
 }
 
 std::string heading(const Scene &scene, const int dim, const ResultScope &scope)
@@ -37,6 +49,13 @@ std::string heading(const Scene &scene, const int dim, const ResultScope &scope)
   for (const auto &condition : scene.model.dirichlet)
     for (const auto &[what, unit] : {std::pair("_displacement_", unit::length), std::pair("_reaction_", unit::force)})
       for (int c = 0; c < dim; ++c) text << ',' << io::csv_quoted(condition.name + what + axes[c] + in(unit));
+  const std::string moment =
+      scope.units.is_default() ? ""
+                               : " [" + scope.units.moment() + (scope.per_length ? "/" + scope.units.length : "") + "]";
+  for (const auto &condition : scene.model.dirichlet)
+    for (const auto &[what, unit] : {std::pair("_rotation_", std::string()), std::pair("_moment_", moment)})
+      for (const int k : rotations_of(condition))
+        text << ',' << io::csv_quoted(condition.name + what + axes[k - 3] + unit);
   write_names(text, count_columns(scope), scope);
   text << ",seconds,converged,reason";
   write_names(text, history_columns(analysis::body_quantities, scope), scope);
@@ -44,7 +63,7 @@ std::string heading(const Scene &scene, const int dim, const ResultScope &scope)
   return text.str();
 }
 
-std::string row(const analysis::StepRecord &step, const int dim, const ResultScope &scope)
+std::string row(const Scene &scene, const analysis::StepRecord &step, const int dim, const ResultScope &scope)
 {
   std::ostringstream text;
   text.precision(17);
@@ -58,6 +77,13 @@ std::string row(const analysis::StepRecord &step, const int dim, const ResultSco
   for (std::size_t k = 0; k < step.reactions.size(); ++k) {
     for (int c = 0; c < dim; ++c) text << ',' << step.displacements[k][c];
     for (int c = 0; c < dim; ++c) text << ',' << step.reactions[k][c];
+  }
+  std::size_t rigid = 0;
+  for (const auto &condition : scene.model.dirichlet) {
+    if (!condition.rigid) continue;
+    for (const auto *const of_steps : {&step.rigid_motions, &step.rigid_forces})
+      for (const int k : rotations_of(condition)) text << ',' << (*of_steps)[rigid][k];
+    ++rigid;
   }
   write_values(text, count_columns(scope), step);
   text << ',' << step.seconds << ',' << (step.converged ? 1 : 0) << ',' << io::csv_quoted(step.reason);
@@ -74,7 +100,7 @@ void HistoryFile::update(const std::string &path, const Scene &scene, const anal
   const ResultScope scope = analysis::result_scope(scene.model, s.discretization);
   on_root(s.discretization.mesh->comm(), ExitCode::internal_error, [&] {
     std::string rows;
-    for (std::size_t k = rows_; k < s.history.size(); ++k) rows += row(s.history[k], dim, scope);
+    for (std::size_t k = rows_; k < s.history.size(); ++k) rows += row(scene, s.history[k], dim, scope);
     if (!file_)
       file_ = std::make_unique<io::GrowingFile>(path, heading(scene, dim, scope) + rows);
     else

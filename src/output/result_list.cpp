@@ -115,10 +115,13 @@ double length_of(const std::vector<double> &vector)
 void mark_nothing(std::vector<Result> &all, const double max_displacement, const double tolerance, double largest = 0)
 {
   constexpr double rounding = 1e-11; // of the largest force
+  const auto is_force = [](const Result &result) {
+    return result.key == "contact_force" || result.key == "reaction_force";
+  };
   for (const Result &result : all)
-    if (result.is_vector) largest = std::max(largest, length_of(result.value));
+    if (is_force(result)) largest = std::max(largest, length_of(result.value));
   for (Result &result : all) {
-    if (!result.is_vector && result.key != "max_penetration") continue;
+    if (!is_force(result) && result.key != "max_penetration") continue;
     const double bar = std::isfinite(result.error_bar) ? result.error_bar : 0, value = length_of(result.value);
     if (value > 0 && value + bar <= (result.is_vector ? rounding * largest : tolerance * max_displacement))
       result.nothing_to = result.is_vector ? "to rounding" : "to the solver's tolerance";
@@ -171,6 +174,37 @@ void add_place(std::vector<Result> &all, const Scene &scene, const Solution &s)
     pressure->more += " and " + std::to_string(others) + " other node" + (others > 1 ? "s" : "");
 }
 
+/// Rotations and moments of rigid sides, whose displacements and forces are those of the other conditions.
+void add_rigid_results(std::vector<Result> &all, const Scene &scene, const Solution &s, const ResultScope &scope)
+{
+  const auto &sides = s.step.elastic.dirichlet.rigid;
+  const int dim = s.discretization.dim();
+  const double size = mesh::diameter(*s.discretization.mesh);
+  double largest = 0;
+  for (const auto &force : s.reactions) largest = std::max(largest, length(force));
+  for (std::size_t j = 0; j < sides.size() && j < s.rigid_forces.size(); ++j) {
+    if (sides[j].motions.back() < 3) continue; // of a body of revolution
+    const auto add = [&](const char *const key, const std::string &line, const fem::SixNumbers &six,
+                         const std::string &unit, const double nothing, const char *const why) {
+      Result result = vector_result(key, {six[3], six[4], six[5]}, 3, unit);
+      if (dim == 2) {
+        result.value = {six[5]};
+        result.is_vector = false;
+      }
+      result.entry = scene.model.dirichlet[sides[j].condition].name;
+      result.line = line + " \"" + result.entry + "\"";
+      const double value = length_of(result.value);
+      if (value > 0 && value <= nothing) result.nothing_to = why;
+      all.push_back(result);
+    };
+    add("rigid_rotation", "rotation of", s.rigid_motions[j], "rad",
+        scene.step.uzawa.tolerance * s.body.displacement / size, "to the solver's tolerance");
+    add("rigid_moment", "moment at", s.rigid_forces[j],
+        scope.units.moment() + (scope.per_length ? "/" + scope.units.length : ""), 1e-11 * largest * size,
+        "to rounding");
+  }
+}
+
 } // namespace
 
 std::vector<Result> result_list(const Scene &scene, const Solution &s)
@@ -198,6 +232,7 @@ std::vector<Result> result_list(const Scene &scene, const Solution &s)
     displacement.no_bar = "the displacement of a side that a force moves is not estimated";
     all.push_back(displacement);
   }
+  add_rigid_results(all, scene, s, scope);
   add_results(all, analysis::body_quantities, s.body, scope);
   Result energy;
   energy.key = "energy_J";

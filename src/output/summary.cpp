@@ -173,6 +173,30 @@ void add_errors(nlohmann::ordered_json &json, const Scene &scene, const Solution
   for (const adapt::Cycle &c : a.cycles) cycles.push_back(cycle_json(c, scope, s.discretization.dim()));
 }
 
+/// Of each rigid side its motion, and the force and moment with which what holds it acts on the body. In the plane rotations and moments are
+/// numbers.
+nlohmann::ordered_json rigid_json(const Scene &scene, const Solution &s)
+{
+  const int dim = s.discretization.dim();
+  auto all = nlohmann::ordered_json::object();
+  const auto &sides = s.step.elastic.dirichlet.rigid;
+  for (std::size_t j = 0; j < sides.size() && j < s.rigid_forces.size(); ++j) {
+    auto &json = all[scene.model.dirichlet[sides[j].condition].name];
+    const auto part = [&](const fem::SixNumbers &six, const int first) {
+      return vector_json({six[first], six[first + 1], six[first + 2]}, dim);
+    };
+    const fem::SixNumbers &q = s.rigid_motions[j], &f = s.rigid_forces[j];
+    json["point"] = vector_json(sides[j].point, dim);
+    json["displacement"] = part(q, 0);
+    if (dim == 3) json["rotation"] = part(q, 3);
+    if (sides[j].motions.back() == 5 && dim == 2) json["rotation"] = q[5];
+    json["force"] = part(f, 0);
+    if (dim == 3) json["moment"] = part(f, 3);
+    if (sides[j].motions.back() == 5 && dim == 2) json["moment"] = f[5];
+  }
+  return all;
+}
+
 } // namespace
 
 nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
@@ -214,6 +238,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   for (std::size_t k = 0; k < s.displacements.size(); ++k)
     if (scene.model.dirichlet[k].is_moved())
       json["force_displacement"][scene.model.dirichlet[k].name] = vector_json(s.displacements[k], mesh.dim());
+  json["rigid"] = rigid_json(scene, s);
   json["side_displacement"] = nlohmann::ordered_json::object();
   if (s.has_results() && s.u != Teuchos::null)
     for (const auto &side : analysis::side_displacements(s.discretization, *s.u))

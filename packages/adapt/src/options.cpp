@@ -117,9 +117,9 @@ void require_adaptable(const Task &task)
                       << "\": their errors are not estimated yet. Leave \"Adapt\" out.");
   for (const auto &condition : task.model.dirichlet)
     RPC_REQUIRE(
-        !condition.is_moved() || !errors,
-        "deck: \"Adapt\" does not go with a side that a force moves, \"Dirichlet->"
-            << condition.name
+        !(condition.is_moved() || condition.rigid) || !errors,
+        "deck: \"Adapt\" does not go with a side that a force moves or that is held rigid, \""
+            << condition.path()
             << "\": errors are not estimated there yet. Leave \"Adapt\" out, or prescribe the displacement that "
                "the force has led to.");
   if (!bounded) return;

@@ -124,7 +124,7 @@ RCP<const Operator> stiffness_of(const fem::ElasticProblem &elastic, const Updat
   return elastic.stiffness_of_tied;
 }
 
-/// u <- from at free unknowns, and its mean at tied ones.
+/// u <- from at free unknowns, and what tied ones have of it at their members, beside what is prescribed there.
 void take_free(const fem::DirichletDofs &dirichlet, const Vector &from, Vector &u)
 {
   const auto fixed = dirichlet.fixed;
@@ -135,7 +135,16 @@ void take_free(const fem::DirichletDofs &dirichlet, const Vector &from, Vector &
         if (!fixed(dof)) to(dof) = source(dof);
       });
   Kokkos::fence();
-  if (dirichlet.tied) set_members(*dirichlet.tied, means(*dirichlet.tied, from), u);
+  if (!dirichlet.tied) return;
+  Vector moved(u.getMap());
+  set_members(*dirichlet.tied, means(*dirichlet.tied, from), moved);
+  const auto group = dirichlet.tied->group;
+  const auto prescribed = device_read(*dirichlet.value), by_groups = device_read(moved);
+  Kokkos::parallel_for(
+      "rpc::contact::take_tied", device_range(static_cast<LO>(u.getLocalLength())), KOKKOS_LAMBDA(const LO dof) {
+        if (group(dof) >= 0) to(dof) = prescribed(dof) + by_groups(dof);
+      });
+  Kokkos::fence();
 }
 
 /// The rounding error of the sum a + b, exactly: D. Knuth's two-sum.
@@ -202,9 +211,7 @@ std::uint64_t Iterate::piece(const Vector &u) const
 double Iterate::size(const Vector &u) const
 {
   if (origin_.is_null()) return u.norm2();
-  Vector sum(u, Teuchos::Copy);
-  sum.update(1., *origin_, 1.);
-  return sum.norm2();
+  return from_rest(u)->norm2();
 }
 
 GO Iterate::update_hessian(const Vector &u)
@@ -387,6 +394,7 @@ void Iterate::move_origin(Vector &u, const Vector &internal, const Vector &appli
 {
   Vector G(internal, Teuchos::Copy);
   G.update(-1., applied, 1.);
+  if (!dirichlet_.rigid.empty()) fem::subtract_spring_forces(dirichlet_.rigid, *from_rest(u), G);
   fem::clear_prescribed(dirichlet_, G);
   take_origin(u, G);
 }
@@ -401,10 +409,16 @@ void Iterate::take_origin(Vector &u, const Vector &out_of_balance)
   u.putScalar(0);
 }
 
-ContactState Iterate::state(const Vector &u) const
+RCP<Vector> Iterate::from_rest(const Vector &u) const
 {
   const auto from_0 = rcp(new Vector(u, Teuchos::Copy));
   if (!origin_.is_null()) from_0->update(1., *origin_, 1.);
+  return from_0;
+}
+
+ContactState Iterate::state(const Vector &u) const
+{
+  const auto from_0 = from_rest(u);
   ContactState state{from_0, multipliers().copy(),
                      DeviceView<State *>("rpc::contact::active_set", active_.state.extent(0))};
   Kokkos::deep_copy(state.active_set, active_.state);

@@ -45,12 +45,12 @@ void require_no_friction_on_tied(const fem::Discretization &d, const ContactNode
     for (int k = 0; k < points.dim; ++k) tied = tied || group(dof(points.dim, node(i), k)) >= 0;
     return tied && mu.extent(0) > 0 && (mu(i) > 0 || bound(i) > 0);
   });
-  throw_if_any(
-      d.mesh->comm(), ExitCode::bad_input,
-      found ? std::optional("deck: " + *found +
-                            " has friction and is on a side that a force of \"Dirichlet\" moves as one, which is "
-                            "not supported. Let the contact side end before that side, or have friction 0 there.")
-            : std::nullopt);
+  throw_if_any(d.mesh->comm(), ExitCode::bad_input,
+               found ? std::optional("deck: " + *found +
+                                     " has friction and is on a side that a force of \"Dirichlet\" or an entry of "
+                                     "\"Rigid\" moves as one, which is not supported. Let the contact side end before "
+                                     "that side, or have friction 0 there.")
+                     : std::nullopt);
 }
 
 void settle_tied_points(const fem::Discretization &d, const ContactNodes &points, const fem::DirichletDofs &dirichlet,
@@ -60,20 +60,21 @@ void settle_tied_points(const fem::Discretization &d, const ContactNodes &points
   const ContactNodes c = points;
   const auto group = dirichlet.tied->group;
   const auto pressure = state.multiplier.normal;
-  const auto x = device_read(*state.displacement);
+  const auto x = device_read(*state.displacement), prescribed = device_read(*dirichlet.value);
+  const auto fixed = dirichlet.fixed;
   const DeviceView<char *> touches("rpc::contact::tied_touches", c.size());
   Kokkos::parallel_for(
       "rpc::contact::settle_tied", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        double moved = 0, part = 0;
+        double moved = 0, taken = 0, part = 0; // taken: what free_gap has of it
         for (int k = 0; k < c.dim; ++k) {
           const LO unknown = c.dof(i, k);
-          if (group(unknown) < 0) continue;
+          if (!fixed(unknown)) continue;
           moved += c.normal(i, k) * x(unknown);
-          part += c.normal(i, k) * c.normal(i, k);
+          taken += c.normal(i, k) * prescribed(unknown);
+          if (group(unknown) >= 0) part += c.normal(i, k) * c.normal(i, k);
         }
         if (!(part > Rounding::direction)) return;
-        if (c.fixed(i)) c.free_gap(i) = c.gap(i) + c.dent(i);
-        c.free_gap(i) -= moved;
+        c.free_gap(i) = c.fixed(i) ? c.gap(i) + c.dent(i) - moved : c.free_gap(i) + taken - moved;
         touches(i) = c.weight(i) > 0 && (pressure(i) > 0 || penetration(c, i, x) > 0);
       });
   Kokkos::fence();
@@ -82,8 +83,9 @@ void settle_tied_points(const fem::Discretization &d, const ContactNodes &points
   throw_if_any(d.mesh->comm(), ExitCode::bad_input,
                found
                    ? std::optional("contact: " + *found +
-                                   " touches, and is on a side that a force of \"Dirichlet\" moves as one against the "
-                                   "foundation, which is not supported. Let the contact side end before that side, or "
+                                   " touches, and is on a side that a force of \"Dirichlet\" or an entry of \"Rigid\" "
+                                   "moves as one against the foundation, which is not supported. Let the contact side "
+                                   "end before that side, or "
                                    "press another side.")
                    : std::nullopt);
 }

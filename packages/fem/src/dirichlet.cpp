@@ -44,7 +44,7 @@ std::optional<std::string> hold_axis(const Discretization &d, const std::vector<
     Prescribed &dof = prescribed[rpc::dof(d.dim(), n, 0)];
     if (dof.condition >= 0 && std::abs(dof.value) > rounding[dof.condition] && !conflict) {
       std::ostringstream message;
-      message << "deck: \"Dirichlet->" << conditions[dof.condition].name << "->X\" must be 0 on the axis x = 0 of an "
+      message << "deck: \"" << conditions[dof.condition].path() << "->X\" must be 0 on the axis x = 0 of an "
               << "axisymmetric body, got " << dof.value << " [m] at (" << coords(n, 0) << ", " << coords(n, 1)
               << "). Multiply it with x, or leave it out.";
       conflict = message.str();
@@ -54,9 +54,29 @@ std::optional<std::string> hold_axis(const Discretization &d, const std::vector<
   return conflict;
 }
 
+const RigidSide &side_of(const std::vector<RigidSide> &rigid, const std::size_t condition)
+{
+  return *std::find_if(rigid.begin(), rigid.end(),
+                       [&](const RigidSide &side) { return side.condition == static_cast<int>(condition); });
+}
+
+/// (nodes) How far prescribed motions move the nodes of a rigid side along a component.
+HostView<double *> given_motion(const RigidSide &side, const DirichletCondition &condition, const int c)
+{
+  const auto arm = to_host(side.arm);
+  HostView<double *> value("rpc::fem::given_motion", side.node.extent(0));
+  for (const int k : side.motions) {
+    if (!condition.rigid->displacement[k]) continue;
+    const double q = finite_value(*condition.rigid->displacement[k], condition.path() + "->" + name_of_motion(k));
+    for (std::size_t i = 0; i < value.extent(0); ++i) value(i) += q * along_motion(k, &arm(3 * i), c);
+  }
+  return value;
+}
+
 /// The prescribed unknowns that this rank owns; a node's last condition wins. Collective.
 std::unordered_map<LO, Prescribed> prescribed_dofs(const Discretization &d,
-                                                   const std::vector<DirichletCondition> &conditions)
+                                                   const std::vector<DirichletCondition> &conditions,
+                                                   const std::vector<RigidSide> &rigid)
 {
   const mesh::Mesh &mesh = *d.mesh;
   const int dim = mesh.dim();
@@ -65,14 +85,15 @@ std::unordered_map<LO, Prescribed> prescribed_dofs(const Discretization &d,
   std::optional<std::string> conflict;
   for (std::size_t k = 0; k < conditions.size(); ++k) {
     const DirichletCondition &condition = conditions[k];
-    const std::string path = "Dirichlet->" + condition.name;
+    const std::string path = condition.path();
     const auto nodes = mesh.nodes_of(condition.side, path + "->Side");
     const HostPoints points = node_positions(mesh, device_values(nodes, "rpc::fem::side_nodes"));
     for (int c = 0; c < dim; ++c) {
       if (!condition.holds(c)) continue;
-      const bool moved = condition.force[c].has_value();
-      const auto values = evaluate(moved ? ScalarField(0.) : *condition.displacement[c], points,
-                                   path + "->" + component_name[c], mesh.comm());
+      const bool moved = condition.moves(c);
+      const auto values = condition.rigid ? given_motion(side_of(rigid, k), condition, c)
+                                          : evaluate(moved ? ScalarField(0.) : *condition.displacement[c], points,
+                                                     path + "->" + component_name[c], mesh.comm());
       double largest = 0;
       for (std::size_t n = 0; n < nodes.size(); ++n) largest = std::max(largest, std::abs(values(n)));
       scale[k][c] = max_all(mesh.comm(), largest);
@@ -83,14 +104,20 @@ std::unordered_map<LO, Prescribed> prescribed_dofs(const Discretization &d,
             other >= 0 && std::abs(dof.value - values(n)) > 1e-12 * std::max(scale[other][c], scale[k][c]);
         if (other >= 0 && (moved || dof.moved) && !conflict) {
           std::ostringstream message;
-          message << "deck: \"Dirichlet->" << conditions[other].name << "\" and \"" << path << "\" both hold "
+          const bool turns = conditions[other].rigid || condition.rigid;
+          message << "deck: \"" << conditions[other].path() << "\" and \"" << path << "\" both hold "
                   << component_name[c] << " of one node (" << points(n, 0) << ", " << points(n, 1)
-                  << (dim == 3 ? ", " + std::to_string(points(n, 2)) : "") << "), and \"Force " << component_name[c]
-                  << "\" is to move it. Leave " << component_name[c] << " out of one of them.";
+                  << (dim == 3 ? ", " + std::to_string(points(n, 2)) : "") << "), and "
+                  << (turns ? "the rigid side" : std::string("\"Force ") + component_name[c] + "\"")
+                  << " is to move it. Leave " << component_name[c] << " out of one of them"
+                  << (turns ? ", or give all motions of the rigid side that move it along " +
+                                  std::string(component_name[c])
+                            : "")
+                  << ".";
           conflict = message.str();
         } else if (differs && !conflict) {
           std::ostringstream message;
-          message << "deck: \"Dirichlet->" << conditions[other].name << "\" and \"" << path << "\" prescribe different "
+          message << "deck: \"" << conditions[other].path() << "\" and \"" << path << "\" prescribe different "
                   << component_name[c] << " at one node (" << points(n, 0) << ", " << points(n, 1)
                   << (dim == 3 ? ", " + std::to_string(points(n, 2)) : "") << "): " << dof.value << " and " << values(n)
                   << " [m]";
@@ -132,7 +159,7 @@ double add_prescribed_forces(const PrescribedCouplings &K, const DeviceView<char
         }
         const bool is_tied = group.extent(0) > 0 && group(row) >= 0;
         b(row) = fixed(row) && !is_tied ? own : b(row) - force;
-        if (fixed(row)) sum += 0.5 * u(row) * (force + own);
+        if (fixed(row)) sum += 0.5 * u(row) * (is_tied ? force : force + own);
       },
       energy);
   return energy;
@@ -219,7 +246,9 @@ std::vector<DirichletCondition> dirichlet_options(const Teuchos::ParameterList &
 DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<DirichletCondition> &conditions)
 {
   require_movable(d, conditions);
-  const auto prescribed = prescribed_dofs(d, conditions);
+  DirichletDofs dirichlet;
+  dirichlet.rigid = rigid_sides(d, conditions);
+  const auto prescribed = prescribed_dofs(d, conditions, dirichlet.rigid);
   std::vector<LO> dofs;
   std::vector<double> values;
   std::vector<int> owners;
@@ -228,7 +257,6 @@ DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<Dirichle
     values.push_back(what.value);
     owners.push_back(what.condition);
   }
-  DirichletDofs dirichlet;
   dirichlet.num_fixed = sum_all(d.mesh->comm(), GO(dofs.size()));
   dirichlet.value = rcp(new Vector(d.owned_dofs));
   dirichlet.condition = DeviceView<int *>(
@@ -259,7 +287,8 @@ DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<Dirichle
       "rpc::fem::dirichlet_flags", device_range(d.num_overlap_dofs()),
       KOKKOS_LAMBDA(const LO i) { flag(i) = from(i) != 0; });
   Kokkos::fence();
-  dirichlet.tied = tied_unknowns(d, conditions, dirichlet.condition);
+  dirichlet.tied = tied_unknowns(d, conditions, dirichlet.condition, dirichlet.rigid);
+  if (dirichlet.tied && !dirichlet.rigid.empty()) part_from_modes(*dirichlet.tied, dirichlet.rigid, *dirichlet.value);
   return dirichlet;
 }
 
@@ -356,6 +385,7 @@ ElasticProblem elastic_problem(const Discretization &d, const PrescribedCoupling
   } else {
     clear_prescribed(dirichlet, *problem.load);
   }
+  if (dirichlet.tied) problem.energy_offset += add_spring_starts(dirichlet, *problem.load);
   problem.applied_load = std::move(applied_load);
   problem.dirichlet = std::move(dirichlet);
   return problem;

@@ -8,8 +8,9 @@
 namespace rpc::fem
 {
 
-/// Refuses a force on a whole side that depends on the place, as far as some points tell.
-/// @param parameter  of the deck   @param remedy  "Write ..."
-void require_of_time_alone(const ScalarField &force, const std::string &parameter, const std::string &remedy);
+/// Refuses what is of a whole side, such as a force, and depends on the place, as far as some points tell.
+/// @param parameter  of the deck   @param remedy  "Write ..."   @param why  it must not
+void require_of_time_alone(const ScalarField &force, const std::string &parameter, const std::string &remedy,
+                           const std::string &why = "it is the force on the whole side");
 
 } // namespace rpc::fem

@@ -130,6 +130,7 @@ void add_rows_of_tied(const Discretization &d, const Parts &parts, const Dirichl
   const TiedUnknowns &tied = *dirichlet.tied;
   const auto of_node = to_host(parts.of_node);
   for (int j = 0; j < tied.size(); ++j) {
+    if (tied.shape[j].extent(0) > 0) continue; // of a rigid side
     const auto members = to_host(tied.members[j]);
     std::vector<LO> nodes;
     int first = parts.size(), last = -1, component = 0;
@@ -145,7 +146,7 @@ void add_rows_of_tied(const Discretization &d, const Parts &parts, const Dirichl
     const HostPoints x = node_positions(*d.mesh, device_values(nodes, "rpc::fem::tied_nodes"));
     std::vector<double> middle(dim, 0.);
     for (std::size_t i = 0; i < nodes.size(); ++i)
-      for (int c = 0; c < dim; ++c) middle[c] += x(i, c) / static_cast<double>(tied.count[j]);
+      for (int c = 0; c < dim; ++c) middle[c] += x(i, c) / tied.square[j];
     middle = summed(comm, middle);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const Part &part = parts.part[last];
@@ -155,6 +156,44 @@ void add_rows_of_tied(const Discretization &d, const Parts &parts, const Dirichl
       RigidMotion row{};
       along_modes(dim, arm, unit, row.data());
       std::fill(row.begin(), row.begin() + dim, 0.); // translations move all by the same amount
+      rows[last].push_back(row);
+    }
+  }
+}
+
+/// What rigid sides with unknown motions stop: those of their motions that are prescribed, or have springs. @throws rpc::Error (bad_input) where
+/// one is of several parts, which it joins; collective
+void add_rows_of_rigid(const Discretization &d, const Parts &parts, const std::vector<RigidSide> &sides,
+                       std::vector<std::vector<RigidMotion>> &rows)
+{
+  const int dim = d.dim();
+  const auto of_node = to_host(parts.of_node);
+  for (const RigidSide &side : sides) {
+    if (side.unknown.empty()) continue;
+    const auto node = to_host(side.node);
+    int first = parts.size(), last = -1;
+    for (std::size_t i = 0; i < node.extent(0); ++i) {
+      first = std::min(first, of_node(node(i)));
+      last = std::max(last, of_node(node(i)));
+    }
+    first = min_all(d.mesh->comm(), first);
+    last = max_all(d.mesh->comm(), last);
+    RPC_REQUIRE(first == last,
+                "deck: a rigid side of \"Rigid\" is of several parts of the body and joins them. Name a side of "
+                "each part, with an entry for each.");
+    const Part &part = parts.part[last];
+    for (const int motion : side.motions) {
+      const auto place = std::find(side.unknown.begin(), side.unknown.end(), motion);
+      if (place != side.unknown.end() && side.stiffness[place - side.unknown.begin()] == 0) continue;
+      RigidMotion row{};
+      if (motion < 3) {
+        double arm[3] = {0, 0, 0}, unit[3] = {0, 0, 0};
+        for (int c = 0; c < dim; ++c) arm[c] = (side.point[c] - part.centre[c]) / part.radius;
+        unit[motion] = 1;
+        along_modes(dim, arm, unit, row.data());
+      } else { // rotations of (9.1) are in the planes of (x, y), (x, z), (y, z)
+        row[dim == 2 ? 2 : 5 - (motion - 3)] = 1;
+      }
       rows[last].push_back(row);
     }
   }
@@ -249,6 +288,7 @@ std::vector<std::vector<RigidMotion>> free_motions(const Discretization &d, cons
     }
   }
   if (dirichlet.tied) add_rows_of_tied(d, parts, dirichlet, rows);
+  add_rows_of_rigid(d, parts, dirichlet.rigid, rows);
   rows = independent_rows_of_all(mesh.comm(), rows, rigid_tolerance);
   std::vector<std::vector<RigidMotion>> motions;
   for (const auto &stopped : rows)

@@ -6,6 +6,7 @@
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/dofs.hpp"
 #include "rpc/core/error.hpp"
+#include "rpc/core/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,15 +14,15 @@
 namespace rpc::fem
 {
 
-void require_of_time_alone(const ScalarField &force, const std::string &parameter, const std::string &remedy)
+void require_of_time_alone(const ScalarField &force, const std::string &parameter, const std::string &remedy,
+                           const std::string &why)
 {
   for (const double t : {0.37, 1., 2.3}) {
     const ScalarField now = force.seen_at(t);
     const double here = now({0, 0, 0}), there = now({0.7, 1.3, 2.1});
     RPC_REQUIRE(here == there || (std::isnan(here) && std::isnan(there)),
-                "deck: \"" << parameter
-                           << "\" must not depend on x, y or z, for it is the force on the whole side, got "
-                           << force.text << ". " << remedy);
+                "deck: \"" << parameter << "\" must not depend on x, y or z, for " << why << ", got " << force.text
+                           << ". " << remedy);
   }
 }
 
@@ -51,12 +52,50 @@ void require_movable(const Discretization &d, const std::vector<DirichletConditi
   }
 }
 
+namespace
+{
+
+/// A group for each unknown motion of a rigid side, with the unknowns along components that move.
+void add_groups(const Discretization &d, const RigidMotions &motions, RigidSide &side, TiedUnknowns &tied,
+                std::vector<int> &group)
+{
+  const auto node = to_host(side.node);
+  const auto arm = to_host(side.arm);
+  const int modes = static_cast<int>(side.unknown.size());
+  side.first_group = tied.size();
+  std::vector<LO> members;
+  std::vector<std::vector<double>> shapes(modes);
+  std::vector<double> squares(modes, 0.);
+  for (std::size_t i = 0; i < node.extent(0); ++i)
+    for (int c = 0; c < d.dim(); ++c) {
+      if (!motions.moves(c)) continue;
+      members.push_back(dof(d.dim(), node(i), c));
+      group[members.back()] = side.first_group;
+      for (int j = 0; j < modes; ++j) {
+        shapes[j].push_back(along_mode(side, j, &arm(3 * i), c));
+        squares[j] += shapes[j].back() * shapes[j].back();
+      }
+    }
+  squares = summed(d.mesh->comm(), squares);
+  const auto of_side = device_values(members, "rpc::fem::tied");
+  for (int j = 0; j < modes; ++j) {
+    tied.members.push_back(of_side);
+    tied.shape.push_back(device_values(shapes[j], "rpc::fem::tied_shape"));
+    tied.square.push_back(squares[j]);
+    tied.adds.push_back(j > 0 ? 1 : 0);
+  }
+}
+
+} // namespace
+
 std::shared_ptr<const TiedUnknowns> tied_unknowns(const Discretization &d,
                                                   const std::vector<DirichletCondition> &conditions,
-                                                  const DeviceView<int *> &condition)
+                                                  const DeviceView<int *> &condition, std::vector<RigidSide> &rigid)
 {
   const auto moved = moved_by_force(conditions);
-  if (moved.empty()) return nullptr;
+  const bool turns =
+      std::any_of(rigid.begin(), rigid.end(), [](const RigidSide &side) { return !side.unknown.empty(); });
+  if (moved.empty() && !turns) return nullptr;
   auto tied = std::make_shared<TiedUnknowns>();
   const auto of = to_host(condition);
   std::vector<int> group(of.extent(0), -1);
@@ -67,29 +106,80 @@ std::shared_ptr<const TiedUnknowns> tied_unknowns(const Discretization &d,
       members.push_back(static_cast<LO>(i));
       group[i] = tied->size();
     }
-    tied->count.push_back(sum_all(d.mesh->comm(), static_cast<GO>(members.size())));
+    tied->square.push_back(static_cast<double>(sum_all(d.mesh->comm(), static_cast<GO>(members.size()))));
     tied->members.push_back(device_values(members, "rpc::fem::tied"));
+    tied->shape.emplace_back();
+    tied->adds.push_back(0);
   }
+  for (RigidSide &side : rigid)
+    if (!side.unknown.empty()) add_groups(d, *conditions[side.condition].rigid, side, *tied, group);
   tied->group = device_values(group, "rpc::fem::tied_group");
   return tied;
+}
+
+void part_from_modes(const TiedUnknowns &tied, std::vector<RigidSide> &rigid, Vector &value)
+{
+  const std::vector<double> part = means(tied, value);
+  for (RigidSide &side : rigid)
+    for (std::size_t j = 0; j < side.unknown.size(); ++j) side.start.push_back(part[side.first_group + j]);
+  Vector of_modes(value.getMap());
+  set_members(tied, part, of_modes);
+  value.update(-1., of_modes, 1.);
+}
+
+double add_spring_starts(const DirichletDofs &dirichlet, Vector &load)
+{
+  const TiedUnknowns &tied = *dirichlet.tied;
+  const int n = tied.size();
+  std::vector<double> stiffness(static_cast<std::size_t>(n) * n, 0.), start(n, 0.), force(n, 0.);
+  add_springs(dirichlet.rigid, n, stiffness);
+  for (const RigidSide &side : dirichlet.rigid)
+    std::copy(side.start.begin(), side.start.end(), start.begin() + side.first_group);
+  double energy = 0;
+  for (int j = 0; j < n; ++j) {
+    for (int k = 0; k < n; ++k) force[j] += stiffness[j * n + k] * start[k];
+    energy += 0.5 * start[j] * force[j];
+    force[j] /= tied.square[j];
+  }
+  if (energy == 0) return 0;
+  Vector forces(load.getMap());
+  set_members(tied, force, forces);
+  load.update(1., forces, 1.);
+  return energy;
+}
+
+double finite_value(const ScalarField &given, const std::string &parameter)
+{
+  const double value = given({});
+  RPC_REQUIRE(std::isfinite(value), "deck: \"" << parameter << "\" must be finite, got " << value << " from "
+                                               << given.text << " at t = " << given.time);
+  return value;
 }
 
 void add_moving_forces(const DirichletDofs &dirichlet, const std::vector<DirichletCondition> &conditions, Vector &load)
 {
   if (!dirichlet.tied) return;
   const TiedUnknowns &tied = *dirichlet.tied;
-  std::vector<double> share;
+  std::vector<double> share(tied.size(), 0.);
+  int group = 0;
   for (const auto &[k, c] : moved_by_force(conditions)) {
-    const ScalarField &given = *conditions[k].force[c];
-    const double force = given({});
-    RPC_REQUIRE(std::isfinite(force), "deck: \"Dirichlet->" << conditions[k].name << "->Force " << component_name[c]
-                                                            << "\" must be finite, got " << force << " from "
-                                                            << given.text << " at t = " << given.time);
-    share.push_back(force / static_cast<double>(tied.count[share.size()]));
+    const double force = finite_value(*conditions[k].force[c], conditions[k].path() + "->" + name_of_force(c));
+    share[group] = force / tied.square[group];
+    ++group;
   }
   Vector forces(load.getMap());
   set_members(tied, share, forces);
+  for (const RigidSide &side : dirichlet.rigid) add_resultants(side, given_forces(conditions[side.condition]), forces);
   load.update(1., forces, 1.);
+}
+
+SixNumbers given_forces(const DirichletCondition &condition)
+{
+  SixNumbers given{};
+  for (int k = 0; k < 6; ++k)
+    if (const auto &force = condition.rigid->force[k])
+      given[k] = finite_value(*force, condition.path() + "->" + name_of_force(k));
+  return given;
 }
 
 namespace
@@ -128,7 +218,10 @@ RCP<const TiedStiffness> tied_stiffness(const Discretization &d, const Prescribe
   if (!dirichlet.tied) return Teuchos::null;
   std::vector<RCP<Vector>> force;
   for (int j = 0; j < dirichlet.tied->size(); ++j) force.push_back(forces_of_group(d, couplings, dirichlet, j));
-  return rcp(new TiedStiffness(std::move(K), *dirichlet.tied, std::move(force)));
+  const int n = dirichlet.tied->size();
+  std::vector<double> springs(static_cast<std::size_t>(n) * n, 0.);
+  add_springs(dirichlet.rigid, n, springs);
+  return rcp(new TiedStiffness(std::move(K), *dirichlet.tied, std::move(force), springs));
 }
 
 } // namespace rpc::fem

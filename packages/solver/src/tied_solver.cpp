@@ -30,6 +30,20 @@ bool solve_dense(std::vector<double> S, std::vector<double> &b)
   return info == 0 && std::all_of(b.begin(), b.end(), [](const double each) { return std::isfinite(each); });
 }
 
+/// Of each value, the stiffness of S against it where the others are as they like: 1 / (S^-1)_jj. Where S is not symmetric, S_jj.
+std::vector<double> own_stiffness(const std::vector<double> &S, const int n, const bool symmetric)
+{
+  std::vector<double> own;
+  for (int j = 0; j < n; ++j) {
+    own.push_back(S[j * n + j]);
+    if (!symmetric || n == 1) continue;
+    std::vector<double> column(n, 0.);
+    column[j] = 1;
+    own.back() = solve_dense(S, column) ? std::min(own.back(), 1 / column[j]) : 0;
+  }
+  return own;
+}
+
 } // namespace
 
 TiedSolver::TiedSolver(RCP<const TiedStiffness> stiffness, RCP<const UpdatedOperator> H)
@@ -84,7 +98,7 @@ LinearSolver::Result TiedSolver::solve(const Held &held, const Vector &b, Vector
   }
   std::vector<double> given = means(tied, b), value;
   const auto from_x = stiffness_->forces_of(x);
-  for (int j = 0; j < n; ++j) given[j] = given[j] * static_cast<double>(tied.count[j]) - from_x[j];
+  for (int j = 0; j < n; ++j) given[j] = given[j] * tied.square[j] - from_x[j];
   std::vector<double> accuracy(n, Response::first); // |C - H Y| / |C|, wanted
   constexpr int most_rounds = 8;
   for (int round = 1; round <= most_rounds; ++round) {
@@ -104,10 +118,10 @@ LinearSolver::Result TiedSolver::solve(const Held &held, const Vector &b, Vector
       }
       missed[j] = std::abs(residual->dot(*response_[j]));
     }
-    const std::vector<double> S = complement();
+    const std::vector<double> S = complement(), stiffness = own_stiffness(S, n, H_->is_symmetric());
     bool regular = true, enough = true;
     for (int j = 0; j < n; ++j) {
-      const double own = S[j * n + j], whole = stiffness_->force(j).norm2();
+      const double own = stiffness[j], whole = stiffness_->force(j).norm2();
       if (missed[j] > Response::told * own && left[j] > Response::no_stiffness * whole) { // S is not known yet
         enough = false;
         accuracy[j] = std::min(accuracy[j], Response::next * left[j] / whole);
@@ -119,7 +133,7 @@ LinearSolver::Result TiedSolver::solve(const Held &held, const Vector &b, Vector
     if (!regular || !solve_dense(S, value)) {
       result.converged = false;
       result.broken = true;
-      result.reason = "nothing holds a side that a force moves: no contact point of the active set is closed";
+      result.reason = "nothing holds a side that forces move: no contact point of the active set that would is closed";
       return result;
     }
     for (int j = 0; j < n; ++j) {
@@ -154,7 +168,7 @@ void TiedSolver::balance(const Vector &b, Vector &x) const
   }
   std::vector<double> step;
   for (int j = 0; j < n; ++j) {
-    double force = given[j] * static_cast<double>(tied.count[j]) - forces[j];
+    double force = given[j] * tied.square[j] - forces[j];
     for (int k = 0; k < n; ++k) force -= stiffness_->stiffness(j, k) * value[k];
     step.push_back(force - response_[j]->dot(left));
   }
@@ -172,7 +186,7 @@ double TiedSolver::inverse_energy(const std::function<double(const Vector &)> &h
   const int n = tied.size();
   const Vector F_F = without_members(F);
   std::vector<double> given = means(tied, F);
-  for (int j = 0; j < n; ++j) given[j] = given[j] * static_cast<double>(tied.count[j]) - response_[j]->dot(F_F);
+  for (int j = 0; j < n; ++j) given[j] = given[j] * tied.square[j] - response_[j]->dot(F_F);
   std::vector<double> value = given;
   double energy = held(F_F);
   if (solve_dense(complement(), value))

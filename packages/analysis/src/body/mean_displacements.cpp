@@ -28,7 +28,7 @@ MeanDisplacements::MeanDisplacements(const Problem &problem) : comm_(problem.dis
   const fem::Discretization &d = problem.discretization();
   const int dim = d.dim();
   for (const auto &condition : problem.model().dirichlet) {
-    const std::vector<LO> nodes = d.mesh->nodes_of(condition.side, "Dirichlet->" + condition.name + "->Side");
+    const std::vector<LO> nodes = d.mesh->nodes_of(condition.side, condition.path() + "->Side");
     const auto areas = areas_of(d, condition.side);
     const bool is_area = areas->normInf() > 0; // of a side that is the axis of a body of revolution there is none
     const auto area = areas->getLocalViewHost(Tpetra::Access::ReadOnly);

@@ -55,9 +55,12 @@ std::vector<std::string> varying_loads(const Model &model)
     add(load.traction, "Traction->" + load.name);
     add(load.force, "Traction->" + load.name);
   }
-  for (const auto &condition : model.dirichlet)
-    for (const auto &force : condition.force)
-      if (force && !force->is_constant()) names.push_back("\"Dirichlet->" + condition.name + '"');
+  for (const auto &condition : model.dirichlet) {
+    std::vector<std::optional<ScalarField>> forces(condition.force.begin(), condition.force.end());
+    if (condition.rigid) forces.assign(condition.rigid->force.begin(), condition.rigid->force.end());
+    for (const auto &force : forces)
+      if (force && !force->is_constant()) names.push_back('"' + condition.path() + '"');
+  }
   return names;
 }
 
@@ -120,6 +123,8 @@ Model Model::seen_at(const double t) const
       if (condition.displacement[c]) condition.displacement[c] = condition.displacement[c]->seen_at(t);
       if (condition.force[c]) condition.force[c] = condition.force[c]->seen_at(t);
     }
+  for (auto &condition : model.dirichlet)
+    if (condition.rigid) condition.rigid = condition.rigid->seen_at(t);
   for (auto &load : model.tractions) {
     load.traction = analysis::seen_at(load.traction, t);
     load.force = analysis::seen_at(load.force, t);

@@ -77,6 +77,11 @@ StepRecord broken_off(const Model &model, StepRecord until_then, const double t,
   record.side_forces.assign(model.contact.size(), vector);
   record.displacements.assign(model.dirichlet.size(), vector);
   record.reactions = record.displacements;
+  fem::SixNumbers motions{};
+  motions.fill(unknown);
+  const auto is_rigid = [](const auto &condition) { return condition.rigid.has_value(); };
+  record.rigid_motions.assign(std::count_if(model.dirichlet.begin(), model.dirichlet.end(), is_rigid), motions);
+  record.rigid_forces = record.rigid_motions;
   return record;
 }
 
@@ -138,6 +143,11 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
     last_.body = fem::body_peaks(problem_->discretization(), problem_->model().materials, *s.u);
     if (!mean_displacements_) mean_displacements_ = std::make_shared<const MeanDisplacements>(*problem_);
     last_.displacements = (*mean_displacements_)(*s.u);
+    last_.rigid_motions = s.rigid_motions;
+    last_.rigid_forces = s.rigid_forces;
+    const auto &rigid = s.step.elastic.dirichlet.rigid;
+    for (std::size_t j = 0; j < rigid.size(); ++j)
+      std::copy_n(s.rigid_motions[j].begin(), 3, last_.displacements[rigid[j].condition].begin());
     last_.reactions = s.reactions;
     last_.energies = kept_.memory->energies;
   } else {

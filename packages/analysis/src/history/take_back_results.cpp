@@ -27,6 +27,8 @@ void take_back_results(Solution &s)
   for (auto &side : s.contact.sides) take_back(side);
   for (auto &force : s.reactions) force.fill(no_result);
   for (auto &displacement : s.displacements) displacement.fill(no_result);
+  for (auto *const numbers : {&s.rigid_motions, &s.rigid_forces})
+    for (auto &each : *numbers) each.fill(no_result);
   s.contact.between = {};
 }
 

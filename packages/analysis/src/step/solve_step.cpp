@@ -330,8 +330,8 @@ void tell_want_of_friction(UzawaResult &uzawa, const Problem &problem)
   if (moves) uzawa.reason_has_residuals = false;
 }
 
-/// Forces with which the Dirichlet conditions hold the body. (2.11)
-std::vector<std::array<double, 3>> reactions(const Problem &problem, const StepSolution &s)
+/// Forces with which the Dirichlet conditions hold the body, and those of rigid sides with their moments. (2.11)
+std::vector<std::array<double, 3>> reactions(const Problem &problem, StepSolution &s)
 {
   const fem::ElasticProblem &elastic = s.step.elastic;
   const fem::Discretization &d = problem.discretization();
@@ -340,6 +340,14 @@ std::vector<std::array<double, 3>> reactions(const Problem &problem, const StepS
   const Model now = problem.model().seen_at(s.step.time);
   auto forces = fem::reaction_forces(d, elastic.dirichlet, static_cast<int>(now.dirichlet.size()), out_of_balance);
   for (const auto &[k, c] : fem::moved_by_force(now.dirichlet)) forces[k][c] += (*now.dirichlet[k].force[c])({});
+  s.rigid_forces.clear();
+  for (const fem::RigidSide &side : elastic.dirichlet.rigid) {
+    fem::SixNumbers all = fem::resultants_on(side, elastic.dirichlet.condition, out_of_balance);
+    const fem::SixNumbers given = fem::given_forces(now.dirichlet[side.condition]);
+    for (int k = 0; k < 6; ++k) all[k] += given[k];
+    std::copy_n(all.begin(), 3, forces[side.condition].begin());
+    s.rigid_forces.push_back(all);
+  }
   return forces;
 }
 
@@ -347,6 +355,8 @@ std::vector<std::array<double, 3>> reactions(const Problem &problem, const StepS
 void read_tied(const Problem &problem, StepSolution &s)
 {
   const fem::DirichletDofs &dirichlet = s.step.elastic.dirichlet;
+  s.rigid_motions.clear();
+  for (const fem::RigidSide &side : dirichlet.rigid) s.rigid_motions.push_back(fem::motions_of(side, *s.u));
   if (!dirichlet.tied) return;
   const auto &conditions = problem.model().dirichlet;
   if (s.uzawa.converged)
@@ -355,6 +365,8 @@ void read_tied(const Problem &problem, StepSolution &s)
   const auto moved = means(*dirichlet.tied, *s.u);
   const auto groups = fem::moved_by_force(conditions);
   for (std::size_t j = 0; j < groups.size(); ++j) s.displacements[groups[j].condition][groups[j].component] = moved[j];
+  for (std::size_t j = 0; j < dirichlet.rigid.size(); ++j)
+    std::copy_n(s.rigid_motions[j].begin(), 3, s.displacements[dirichlet.rigid[j].condition].begin());
 }
 
 void read_results(const Problem &problem, const StepOptions &options, StepSolution &s)
@@ -367,8 +379,9 @@ void read_results(const Problem &problem, const StepOptions &options, StepSoluti
                                 problem.model().seen_at(s.step.time).contact, s.step.contact, problem.model().materials,
                                 *s.state.displacement, s.contact); // (3.15)
   s.energy_norm_squared = s.uzawa.residuals.internal.energy_norm_squared;
-  const double elastic = 0.5 * s.energy_norm_squared - s.step.elastic.applied_load->dot(*s.state.displacement); // (1.2)
-  s.energy = contact::energy(elastic, s.step.contact, s.state); // paper (6); (5.14)
+  const double elastic = 0.5 * s.energy_norm_squared - s.step.elastic.applied_load->dot(*s.state.displacement) +
+                         fem::spring_energy(s.step.elastic.dirichlet.rigid, *s.u); // (1.2), (2.9c)
+  s.energy = contact::energy(elastic, s.step.contact, s.state);                    // paper (6); (5.14)
   s.reactions = reactions(problem, s);
 }
 

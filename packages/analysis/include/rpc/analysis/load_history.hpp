@@ -50,8 +50,9 @@ struct StepRecord {
   contact::ContactSums contact;
   std::vector<std::array<double, 3>> side_forces; ///< contact::ContactSums::force of each contact side
   fem::BodyPeaks body;
-  std::vector<std::array<double, 3>> displacements; ///< means over the place of each Dirichlet condition [m]
-  std::vector<std::array<double, 3>> reactions;     ///< as in StepSolution
+  std::vector<std::array<double, 3>> displacements;         ///< means over the place of each Dirichlet condition [m]
+  std::vector<std::array<double, 3>> reactions;             ///< as in StepSolution
+  std::vector<fem::SixNumbers> rigid_motions, rigid_forces; ///< as in StepSolution
   int newton_iterations = 0, linear_solves = 0, linear_iterations = 0, preconditioner_setups = 0;
   double seconds = 0;
 };

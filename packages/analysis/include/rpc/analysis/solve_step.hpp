@@ -91,8 +91,10 @@ struct StepSolution {
   double energy = 0;                            ///< J(u) [J], in 2D per m
   double energy_norm_squared = 0;               ///< a(u, u) [J], in 2D per m
   std::vector<std::array<double, 3>> reactions; ///< of each Dirichlet condition on the body [N], in 2D per m
-  /// Of the side of each Dirichlet condition, its mean [m]; empty where no force moves a side.
+  /// Of the side of each Dirichlet condition, its mean, of a rigid one that of its reference point [m]; empty where no force moves a side.
   std::vector<std::array<double, 3>> displacements;
+  std::vector<fem::SixNumbers> rigid_motions; ///< of each rigid side
+  std::vector<fem::SixNumbers> rigid_forces;  ///< with which what holds it acts on the body, about its reference point
 
   solver::LinearSolverCounts linear; ///< of this step
   FoundBy found_by = FoundBy::choices;

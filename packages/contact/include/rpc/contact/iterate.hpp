@@ -146,6 +146,7 @@ public:
 
 private:
   void take_origin(Vector &u, const Vector &out_of_balance);
+  RCP<Vector> from_rest(const Vector &u) const; // the displacement from 0
   GO update_stiffness(const Vector &u); // brings hessian() to the active set; number of nodes whose stiffness changed
   double replace_multipliers(const DeviceView<double *> &p, const DeviceView<double **> &q);
 

@@ -6,6 +6,7 @@
 #include "rpc/core/field.hpp"
 #include "rpc/fem/discretization.hpp"
 #include "rpc/fem/elasticity.hpp"
+#include "rpc/fem/rigid_side.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <array>
@@ -25,18 +26,23 @@ struct DirichletCondition {
   std::array<std::optional<ScalarField>, 3> displacement; ///< [m]
   /// On the whole side, which moves along that component as one [N]; of time alone.
   std::array<std::optional<ScalarField>, 3> force{};
+  std::optional<RigidMotions> rigid{}; ///< instead of both, for an entry of `Rigid`
 
   /// Whether the side's nodes are not free along a component.
-  bool holds(const int component) const { return displacement[component] || force[component]; }
+  bool holds(const int component) const { return rigid || displacement[component] || force[component]; }
+  /// Whether the side's nodes move as one along a component, as far as forces move them.
+  bool moves(const int component) const { return rigid ? rigid->moves(component) : force[component].has_value(); }
   /// Whether a force moves the side.
-  bool is_moved() const { return force[0] || force[1] || force[2]; }
+  bool is_moved() const { return rigid ? !rigid->unknown().empty() : force[0] || force[1] || force[2]; }
+  /// Of the entry in the deck.
+  std::string path() const { return (rigid ? "Rigid->" : "Dirichlet->") + name; }
 };
 
 /// A component of a side that a force moves: a group of tied unknowns.
 struct MovedByForce {
   int condition, component;
 };
-/// In the order of the groups.
+/// In the order of the groups, which those of rigid sides follow.
 std::vector<MovedByForce> moved_by_force(const std::vector<DirichletCondition> &conditions);
 
 /// Parameters of the deck's `Dirichlet` sublist.
@@ -45,7 +51,14 @@ Teuchos::ParameterList valid_dirichlet_parameters();
 std::vector<DirichletCondition> dirichlet_options(const Teuchos::ParameterList &list, int dim,
                                                   const FieldParser &parse);
 
-/// Which unknowns are prescribed, and their values. Those that a force moves as one are among them, with the value 0.
+/// Parameters of the deck's `Rigid` sublist.
+Teuchos::ParameterList valid_rigid_parameters();
+/// @throws rpc::Error (bad_input) on motions that the body does not have, or that are given twice
+std::vector<DirichletCondition> rigid_options(const Teuchos::ParameterList &list, int dim, Kinematics kinematics,
+                                              const FieldParser &parse);
+
+/// Which unknowns are prescribed, and their values. Those that a force moves as one are among them, with the value 0; of
+/// a rigid side what its prescribed motions do, less what its unknown ones can do.
 struct DirichletDofs {
   DeviceView<char *> fixed; ///< (overlap dofs) 1 where prescribed
   DeviceView<int *>
@@ -54,7 +67,8 @@ struct DirichletDofs {
   RCP<Vector> value; ///< (owned dofs) [m], 0 where free
   GO num_fixed = 0;  ///< over all ranks
   std::shared_ptr<const TiedUnknowns>
-      tied; ///< those that a force moves, a group for each component of a side; null: none
+      tied;                     ///< those that a force moves, a group for each component of a side; null: none
+  std::vector<RigidSide> rigid; ///< of the deck's `Rigid`
 };
 
 /// u_r = 0 on the axis of an axisymmetric body is prescribed without a condition. Collective.
@@ -118,7 +132,10 @@ ElasticProblem elastic_problem(const Discretization &d, const PrescribedCoupling
 /// @throws rpc::Error (bad_input) if one is not finite
 void add_moving_forces(const DirichletDofs &dirichlet, const std::vector<DirichletCondition> &conditions, Vector &load);
 
-/// The stiffness with tied unknowns; null where there are none. Collective.                                       (2.9a)
+/// Forces and moments that the deck gives a rigid side at its time. @throws rpc::Error (bad_input) if one is not finite
+SixNumbers given_forces(const DirichletCondition &condition);
+
+/// The stiffness with tied unknowns, springs included; null where there are none. Collective.                                       (2.9a)
 /// @param K  the same, all prescribed unknowns eliminated
 RCP<const TiedStiffness> tied_stiffness(const Discretization &d, const PrescribedCouplings &couplings,
                                         const DirichletDofs &dirichlet, RCP<const StiffnessOperator> K);
