@@ -197,7 +197,10 @@ void print_loads(Block &block, const Scene &scene, const fem::Discretization &d)
     tell("body force", changes(force),
          [&](const analysis::Model &model) { return fem::resultant(d, model.body_force); });
   else if (scene.model.tractions.empty())
-    block.line("loads", "none but what \"Dirichlet\" prescribes");
+    block.line("loads", std::any_of(scene.model.dirichlet.begin(), scene.model.dirichlet.end(),
+                                    [](const auto &each) { return each.rigid.has_value(); })
+                            ? "none but what \"Dirichlet\" and \"Rigid\" give"
+                            : "none but what \"Dirichlet\" prescribes");
 }
 
 std::string law_text(const contact::ContactOptions &side, const UnitNames &units)

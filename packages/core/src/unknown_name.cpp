@@ -63,6 +63,18 @@ std::string components_remedy(const std::string &name, const Teuchos::ParameterL
 {
   const std::string word = letters(name), unit = wanted_of(valid, "X").unit;
   const bool load = word.find("force") != word.npos || word.find("load") != word.npos || word == "f";
+  const auto means_one_of = [&](const std::vector<std::string> &words) {
+    return std::any_of(words.begin(), words.end(), [&](const auto &each) { return word.find(each) != word.npos; });
+  };
+  if (valid.isParameter("Moment X")) { // of a rigid side
+    const std::string in_plane = "; in the plane Z alone.";
+    if (means_one_of({"moment", "torque"}))
+      return " Write the components of the moment about the reference point: Moment X, Moment Y, Moment Z" + in_plane;
+    if (means_one_of({"spring", "stiffness"}))
+      return " Write the stiffness of the motion: Stiffness X, Y or Z, or Rotation Stiffness X, Y or Z" + in_plane;
+    if (means_one_of({"rotation", "angle", "tilt", "turn"}))
+      return " Write the components of the rotation [rad]: Rotation X, Rotation Y, Rotation Z" + in_plane;
+  }
   const bool pressure = word.find("pressure") != word.npos || word.find("traction") != word.npos || word == "p";
   if (unit == "m" && load && valid.isParameter("Force X"))
     return " Write the components of the force that moves the side as one rigid piece, Force X, Force Y, Force Z; a "

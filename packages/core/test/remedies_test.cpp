@@ -260,6 +260,19 @@ TEST(UnknownName, OfASideThatAForceMovesIsADisplacementOrItsForce)
     expect_error(ExitCode::bad_input, part, [&] { rpc::assign(list, valid, assignment); });
 }
 
+TEST(UnknownName, OfARigidSideIsAMotionOrWhatMovesIt)
+{
+  ParameterList valid("deck"), entry, list;
+  for (const char *const name : {"X", "Rotation X", "Force X", "Moment X", "Stiffness X", "Rotation Stiffness X"})
+    rpc::set_field(entry, name, "", "Displacement [m].");
+  rpc::set_named_entries(valid, "Rigid", entry, "Rigid sides.");
+  for (const auto &[assignment, part] :
+       {std::pair("Rigid->top->Torque=1", "Moment X, Moment Y, Moment Z; in the plane Z alone"),
+        std::pair("Rigid->top->Tilt=1", "Rotation X, Rotation Y, Rotation Z; in the plane Z alone"),
+        std::pair("Rigid->top->Spring=1", "Stiffness X, Y or Z, or Rotation Stiffness X, Y or Z")})
+    expect_error(ExitCode::bad_input, part, [&] { rpc::assign(list, valid, assignment); });
+}
+
 TEST(UnknownName, OfAComponentIsTakenByItsQuantity)
 {
   ParameterList list;
