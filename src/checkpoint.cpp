@@ -63,6 +63,7 @@ json to_json(const StepRecord &r, const ResultScope &scope)
                 {"reactions", r.reactions},
                 {"rigid_motions", r.rigid_motions},
                 {"rigid_forces", r.rigid_forces},
+                {"obstacle", r.obstacle},
                 {"work", kept_numbers(analysis::step_work, r, scope)},
                 {"from_rest", r.from_rest},
                 {"seconds", r.seconds}};
@@ -82,6 +83,7 @@ StepRecord record_from(const json &j, const ResultScope &scope)
   r.reactions = j.at("reactions").get<std::vector<std::array<double, 3>>>();
   r.rigid_motions = j.value("rigid_motions", r.rigid_motions); // older files have no rigid sides
   r.rigid_forces = j.value("rigid_forces", r.rigid_forces);
+  r.obstacle = j.value("obstacle", r.obstacle);
   take_numbers(j.at("work"), analysis::step_work, r, scope);
   for (const auto &q : defined_numbers(analysis::step_parts, scope)) r.*q.value = j.at(q.key);
   r.from_rest = j.value("from_rest", false);
@@ -281,6 +283,7 @@ analysis::HistoryState Checkpoints::state_of(Whole whole) const
     state.last.time = whole.file.time();
     state.last.energies = energies_from(text.at("energies"), scope);
     state.last.energy_scale = text.at("energy_scale");
+    state.last.obstacle = text.value("obstacle", Point{});
     state.last.displacement = reader.components();
     state.last.pressure = reader.columns(sides);
     state.last.dent = reader.columns(sides);
@@ -290,6 +293,7 @@ analysis::HistoryState Checkpoints::state_of(Whole whole) const
     if (text.contains("before")) {
       state.before.emplace();
       state.before->time = text.at("before");
+      state.before->obstacle = text.value("obstacle_before", Point{});
       state.before->displacement = reader.components();
       state.before->pressure = reader.columns(sides);
       if (tangential) state.before->tangential = reader.columns(sides * d.dim());
@@ -321,6 +325,7 @@ void Checkpoints::write(const analysis::HistoryState &state)
   const ResultScope scope = analysis::result_scope(scene_.model, d);
   json text = {{"energies", kept_numbers(analysis::energy_quantities, state.last.energies, scope)},
                {"energy_scale", state.last.energy_scale},
+               {"obstacle", state.last.obstacle},
                {"assemblies", state.matrix_assemblies},
                {"largest_estimate", state.largest_estimate}};
   for (const auto &[name, content] : scene_.identity) text["deck"][name] = content;
@@ -338,6 +343,7 @@ void Checkpoints::write(const analysis::HistoryState &state)
   }
   if (state.before) {
     text["before"] = state.before->time;
+    text["obstacle_before"] = state.before->obstacle;
     add_components(fields, "before_displacement_", *state.before->displacement, d.dim());
     add_columns(fields, "before_pressure_", *state.before->pressure);
     if (tangential) add_columns(fields, "before_tangential_", *state.before->tangential);

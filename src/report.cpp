@@ -278,6 +278,10 @@ void print_accuracy(std::ostream &out, const Scene &scene, const Solution &s)
     print_text(out, "errors", "not estimated where a force moves a side, or a side is held rigid");
     return;
   }
+  if (obstacle_moved(scene, s)) {
+    print_text(out, "errors", "not estimated where a force moves the obstacle");
+    return;
+  }
   if (!s.estimate) {
     print_text(
         out, "errors",

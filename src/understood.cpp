@@ -232,9 +232,13 @@ void print_foundations(Block &block, const Scene &scene)
     const std::string unit = scene.model.units.length;
     const auto &surface = side.obstacle.surface;
     const std::string detail = surface && surface->detail ? ", " + surface->detail->told(unit) : "";
-    const std::string obstacle = side.obstacle.exists() ? std::string("; the gap follows from the obstacle") +
-                                                              (side.obstacle.moves() ? ", which moves" : "") + detail
-                                                        : "";
+    std::string moves;
+    for (int c = 0; c < 3; ++c)
+      if (side.obstacle.force[c])
+        moves += std::string(", moved by Force ") + component_names[c] + " = " + field_words(*side.obstacle.force[c]);
+    if (moves.empty() && side.obstacle.moves()) moves = ", which moves";
+    const std::string obstacle =
+        side.obstacle.exists() ? "; the gap follows from the obstacle" + moves + detail : std::string();
     block.line("foundation", "\"" + side.name_in_results() + "\": " + law_text(side, scene.model.units) + obstacle);
   }
   if (scene.model.contact.empty()) block.line("foundation", "none: nothing touches");

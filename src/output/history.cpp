@@ -31,6 +31,11 @@ std::vector<int> rotations_of(const fem::DirichletCondition &condition)
     std::copy_if(condition.rigid->motions.begin(), condition.rigid->motions.end(), std::back_inserter(rotations),
                  [](const int motion) { return motion >= 3; });
   return rotations;
+/// Whether a force moves an obstacle.
+bool is_moved(const Scene &scene)
+{
+  const auto &sides = scene.model.contact;
+  return std::any_of(sides.begin(), sides.end(), [](const auto &side) { return side.obstacle.is_moved(); });
 }
 
 std::string heading(const Scene &scene, const int dim, const ResultScope &scope)
@@ -56,6 +61,8 @@ std::string heading(const Scene &scene, const int dim, const ResultScope &scope)
     for (const auto &[what, unit] : {std::pair("_rotation_", std::string()), std::pair("_moment_", moment)})
       for (const int k : rotations_of(condition))
         text << ',' << io::csv_quoted(condition.name + what + axes[k - 3] + unit);
+  if (is_moved(scene))
+    for (int c = 0; c < dim; ++c) text << ",obstacle_displacement_" << axes[c] << in(unit::length);
   write_names(text, count_columns(scope), scope);
   text << ",seconds,converged,reason";
   write_names(text, history_columns(analysis::body_quantities, scope), scope);
@@ -85,6 +92,7 @@ std::string row(const Scene &scene, const analysis::StepRecord &step, const int 
       for (const int k : rotations_of(condition)) text << ',' << (*of_steps)[rigid][k];
     ++rigid;
   }
+  for (int c = 0; c < dim && is_moved(scene); ++c) text << ',' << step.obstacle[c];
   write_values(text, count_columns(scope), step);
   text << ',' << step.seconds << ',' << (step.converged ? 1 : 0) << ',' << io::csv_quoted(step.reason);
   write_values(text, history_columns(analysis::body_quantities, scope), step.body);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iterator>
+#include <limits>
 
 namespace rpc
 {
@@ -207,6 +208,15 @@ void add_rigid_results(std::vector<Result> &all, const Scene &scene, const Solut
 
 } // namespace
 
+std::optional<Point> obstacle_moved(const Scene &scene, const Solution &s)
+{
+  const auto &sides = scene.model.contact;
+  if (std::none_of(sides.begin(), sides.end(), [](const auto &side) { return side.obstacle.is_moved(); })) return {};
+  if (s.has_results()) return analysis::obstacle_displacement(scene.model, s.time, s.step.obstacle);
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  return Point{unknown, unknown, unknown};
+}
+
 std::vector<Result> result_list(const Scene &scene, const Solution &s)
 {
   const ResultScope scope = analysis::result_scope(scene.model, s.discretization);
@@ -233,6 +243,12 @@ std::vector<Result> result_list(const Scene &scene, const Solution &s)
     all.push_back(displacement);
   }
   add_rigid_results(all, scene, s, scope);
+  if (const auto moved = obstacle_moved(scene, s)) {
+    Result displacement = vector_result("obstacle_displacement", *moved, dim, scope.units.length);
+    displacement.line = "displacement of the obstacle";
+    displacement.no_bar = "the displacement of an obstacle that a force moves is not estimated";
+    all.push_back(displacement);
+  }
   add_results(all, analysis::body_quantities, s.body, scope);
   Result energy;
   energy.key = "energy_J";

@@ -5,6 +5,7 @@
 #include "solve.hpp"
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,9 @@ struct Result {
 /// The results of a run in the order in which an engineer reads them: forces, contact, supports, body, energies. Without
 /// a solution all are NaN. Collective.
 std::vector<Result> result_list(const Scene &scene, const Solution &solution);
+
+/// How far the obstacle that a force moves is from where it was at t = 0 [m], NaN without a solution; nothing where there is none.
+std::optional<Point> obstacle_moved(const Scene &scene, const Solution &solution);
 
 /// Those of one of several contact sides, without error bars.
 std::vector<Result> side_results(const Scene &scene, const Solution &solution, std::size_t side);

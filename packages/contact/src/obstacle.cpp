@@ -139,6 +139,40 @@ void set_standard(Teuchos::ParameterList &valid, const ListParameter &p)
   std::visit(set, p.parameter.standard);
 }
 
+/// @throws rpc::Error (bad_input) where a field depends on place, or is not finite now
+void require_finite_of_time(const ScalarField &field, const std::string &parameter, const std::string &text)
+{
+  const double here = field({0, 0, 0}), there = field({0.7, 1.3, 2.1});
+  RPC_REQUIRE(here == there || (std::isnan(here) && std::isnan(there)),
+              "deck: \"" << parameter << "\" must not depend on x, y or z, got " << text);
+  RPC_REQUIRE(std::isfinite(here), "deck: \"" << parameter << "\" must be finite, got " << here
+                                              << (field.is_constant() ? "" : " from " + text));
+}
+
+constexpr const char *force_names[] = {"Force X", "Force Y", "Force Z"};
+
+/// The forces that move the obstacle, along the coordinates that have one.
+std::array<std::optional<ScalarField>, 3> forces_of(const Teuchos::ParameterList &list, const Obstacle &obstacle,
+                                                    const int dim, const std::string &path, const std::string &point,
+                                                    const FieldParser &parse)
+{
+  std::array<std::optional<ScalarField>, 3> force;
+  for (int c = 0; c < 3; ++c) {
+    const std::string parameter = path + "->" + force_names[c], text = field_text(list, force_names[c]);
+    if (text.empty()) continue;
+    RPC_REQUIRE(c < dim, "deck: \"" << parameter << "\" moves along a component that a " << dim
+                                    << "D mesh does not have. It has X and Y; of a body of revolution Y runs along the "
+                                       "axis.");
+    force[c] = parse(text, parameter);
+    require_finite_of_time(*force[c], parameter, text);
+    RPC_REQUIRE(obstacle.path[c].is_constant(),
+                "deck: \"" << path << "->" << point << "\" must have a number as its coordinate along " << "XYZ"[c]
+                           << ", where the obstacle starts, for \"" << force_names[c] << "\" moves it; got "
+                           << obstacle.path[c].text << ". Leave one of them out.");
+  }
+  return force;
+}
+
 /// The coordinates of a point as functions of time alone.
 std::array<ScalarField, 3> path_of(const Teuchos::ParameterList &list, const std::string &name, const int dim,
                                    const std::string &path, const FieldParser &parse)
@@ -150,11 +184,7 @@ std::array<ScalarField, 3> path_of(const Teuchos::ParameterList &list, const std
   std::array<ScalarField, 3> fields;
   for (int c = 0; c < dim; ++c) {
     fields[c] = parse(texts[c], path + "->" + name);
-    const double here = fields[c]({0, 0, 0}), there = fields[c]({0.7, 1.3, 2.1});
-    RPC_REQUIRE(here == there || (std::isnan(here) && std::isnan(there)),
-                "deck: \"" << path << "->" << name << "\" must not depend on x, y or z, got " << texts[c]);
-    RPC_REQUIRE(std::isfinite(here), "deck: \"" << path << "->" << name << "\" must be finite, got " << here
-                                                << (fields[c].is_constant() ? "" : " from " + texts[c]));
+    require_finite_of_time(fields[c], path + "->" + name, texts[c]);
   }
   return fields;
 }
@@ -176,6 +206,11 @@ Teuchos::ParameterList valid_obstacle_parameters()
     else
       set_standard(valid, p);
   }
+  for (const char *const name : force_names)
+    set_field(valid, name, "",
+              std::string("Force in ") + (name + 6) +
+                  " on the obstacle [N], in the plane per m, axisymmetric on the whole circumference: it moves along " +
+                  (name + 6) + " as far as the force moves it. A number or an expression of t.");
   return valid;
 }
 
@@ -191,6 +226,10 @@ Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, con
       RPC_REQUIRE(list.getEntry(p.name).isDefault(),
                   "deck: \"" << path << "\" has a \"" << p.name
                              << "\" and no \"Type\", so that there is no obstacle. Types: " << types);
+  for (const char *const name : force_names)
+    RPC_REQUIRE(!list.getEntry("Type").isDefault() || list.getEntry(name).isDefault(),
+                "deck: \"" << path << "\" has a \"" << name
+                           << "\" and no \"Type\", so that there is no obstacle to move. Types: " << types);
   if (type == "none") return {}; // switches an obstacle off, whatever it was
   const auto choice = std::find_if(all.begin(), all.end(), [&](const Choice &c) { return c.is(type); });
   RPC_REQUIRE(choice != all.end(),
@@ -209,12 +248,14 @@ Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, con
   obstacle.surface = choice->read(list, dim, path, read_file);
   for (int c = 0; c < dim; ++c) obstacle.point[c] = obstacle.path[c]({});
   obstacle.origin = obstacle.point;
+  obstacle.force = forces_of(list, obstacle, dim, path, choice->kind.point, parse);
   return obstacle;
 }
 
 bool Obstacle::moves() const
 {
-  return std::any_of(path.begin(), path.end(), [](const ScalarField &coordinate) { return !coordinate.is_constant(); });
+  return is_moved() ||
+         std::any_of(path.begin(), path.end(), [](const ScalarField &coordinate) { return !coordinate.is_constant(); });
 }
 
 Obstacle Obstacle::seen_at(const double t) const
@@ -223,6 +264,7 @@ Obstacle Obstacle::seen_at(const double t) const
   for (int c = 0; c < 3; ++c) {
     seen.path[c] = path[c].seen_at(t);
     if (!path[c].is_constant()) seen.point[c] = seen.path[c]({});
+    if (force[c]) seen.force[c] = force[c]->seen_at(t);
   }
   return seen;
 }

@@ -4,6 +4,7 @@
 #include "rpc/contact/rounding.hpp"
 #include "rpc/core/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <sstream>
@@ -12,6 +13,17 @@ namespace rpc::contact
 {
 namespace
 {
+
+/// What of a node is moved by a force, to end a sentence about it.
+std::string moved_as(const std::vector<ContactOptions> &options)
+{
+  const bool by_obstacle =
+      std::any_of(options.begin(), options.end(), [](const auto &side) { return side.obstacle.is_moved(); });
+  return by_obstacle ? "is held along a direction in which a force moves the obstacle, which is not supported. Let the "
+                       "contact side end before the side that is held, or "
+                     : "is on a side that a force of \"Dirichlet\" or an entry of \"Rigid\" moves as one, which is not "
+                       "supported. Let the contact side end before that side, or ";
+}
 
 /// "the node at (1, 0) of the contact side "bottom"" of the first point, side after side, that a test is true of; collective.
 template <class Test>
@@ -45,12 +57,10 @@ void require_no_friction_on_tied(const fem::Discretization &d, const ContactNode
     for (int k = 0; k < points.dim; ++k) tied = tied || group(dof(points.dim, node(i), k)) >= 0;
     return tied && mu.extent(0) > 0 && (mu(i) > 0 || bound(i) > 0);
   });
-  throw_if_any(d.mesh->comm(), ExitCode::bad_input,
-               found ? std::optional("deck: " + *found +
-                                     " has friction and is on a side that a force of \"Dirichlet\" or an entry of "
-                                     "\"Rigid\" moves as one, which is not supported. Let the contact side end before "
-                                     "that side, or have friction 0 there.")
-                     : std::nullopt);
+  throw_if_any(
+      d.mesh->comm(), ExitCode::bad_input,
+      found ? std::optional("deck: " + *found + " has friction and " + moved_as(options) + "have friction 0 there.")
+            : std::nullopt);
 }
 
 void settle_tied_points(const fem::Discretization &d, const ContactNodes &points, const fem::DirichletDofs &dirichlet,
@@ -82,11 +92,7 @@ void settle_tied_points(const fem::Discretization &d, const ContactNodes &points
   const auto found = first_where(d, points, options, [&](const LO i) { return touching(i) != 0; });
   throw_if_any(d.mesh->comm(), ExitCode::bad_input,
                found
-                   ? std::optional("contact: " + *found +
-                                   " touches, and is on a side that a force of \"Dirichlet\" or an entry of \"Rigid\" "
-                                   "moves as one against the foundation, which is not supported. Let the contact side "
-                                   "end before that side, or "
-                                   "press another side.")
+                   ? std::optional("contact: " + *found + " touches, and " + moved_as(options) + "choose another side.")
                    : std::nullopt);
 }
 

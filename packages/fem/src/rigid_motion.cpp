@@ -142,7 +142,7 @@ void add_rows_of_tied(const Discretization &d, const Parts &parts, const Dirichl
     }
     RPC_REQUIRE(min_all(comm, first) == max_all(comm, last),
                 "deck: a force of \"Dirichlet\" moves a side of several parts of the body as one. Name a side of each "
-                "part, with a force for each.");
+                "part, with a force for each. An obstacle that a force moves goes with a body of one part alone.");
     const HostPoints x = node_positions(*d.mesh, device_values(nodes, "rpc::fem::tied_nodes"));
     std::vector<double> middle(dim, 0.);
     for (std::size_t i = 0; i < nodes.size(); ++i)

@@ -93,16 +93,17 @@ std::shared_ptr<const TiedUnknowns> tied_unknowns(const Discretization &d,
                                                   const DeviceView<int *> &condition, std::vector<RigidSide> &rigid)
 {
   const auto moved = moved_by_force(conditions);
+  const auto floating = floating_components(conditions);
   const bool turns =
       std::any_of(rigid.begin(), rigid.end(), [](const RigidSide &side) { return !side.unknown.empty(); });
-  if (moved.empty() && !turns) return nullptr;
+  if (moved.empty() && floating.empty() && !turns) return nullptr;
   auto tied = std::make_shared<TiedUnknowns>();
   const auto of = to_host(condition);
   std::vector<int> group(of.extent(0), -1);
-  for (const auto &[k, c] : moved) {
+  const auto add_group = [&](const int component, const auto &has) {
     std::vector<LO> members;
     for (std::size_t i = 0; i < of.extent(0); ++i) {
-      if (of(i) != k || component_of(d.dim(), static_cast<LO>(i)) != c) continue;
+      if (of(i) < 0 || component_of(d.dim(), static_cast<LO>(i)) != component || !has(of(i))) continue;
       members.push_back(static_cast<LO>(i));
       group[i] = tied->size();
     }
@@ -110,7 +111,9 @@ std::shared_ptr<const TiedUnknowns> tied_unknowns(const Discretization &d,
     tied->members.push_back(device_values(members, "rpc::fem::tied"));
     tied->shape.emplace_back();
     tied->adds.push_back(0);
-  }
+  };
+  for (const auto &one : moved) add_group(one.component, [&](const int k) { return k == one.condition; });
+  for (const int c : floating) add_group(c, [&](const int k) { return conditions[k].floats[c]; });
   for (RigidSide &side : rigid)
     if (!side.unknown.empty()) add_groups(d, *conditions[side.condition].rigid, side, *tied, group);
   tied->group = device_values(group, "rpc::fem::tied_group");
@@ -160,7 +163,7 @@ void add_moving_forces(const DirichletDofs &dirichlet, const std::vector<Dirichl
 {
   if (!dirichlet.tied) return;
   const TiedUnknowns &tied = *dirichlet.tied;
-  std::vector<double> share(tied.size(), 0.);
+  std::vector<double> share(tied.size(), 0.); // those that float have forces of their own
   int group = 0;
   for (const auto &[k, c] : moved_by_force(conditions)) {
     const double force = finite_value(*conditions[k].force[c], conditions[k].path() + "->" + name_of_force(c));
@@ -180,6 +183,30 @@ SixNumbers given_forces(const DirichletCondition &condition)
     if (const auto &force = condition.rigid->force[k])
       given[k] = finite_value(*force, condition.path() + "->" + name_of_force(k));
   return given;
+}
+
+std::vector<int> floating_components(const std::vector<DirichletCondition> &conditions)
+{
+  std::vector<int> components;
+  for (int c = 0; c < 3; ++c)
+    if (std::any_of(conditions.begin(), conditions.end(), [c](const auto &each) { return each.floats[c]; }))
+      components.push_back(c);
+  return components;
+}
+
+RCP<Vector> forces_on_floating(const Discretization &d, const DirichletDofs &dirichlet,
+                               const std::vector<DirichletCondition> &conditions, const std::array<double, 3> &force)
+{
+  const TiedUnknowns &tied = *dirichlet.tied;
+  std::vector<double> share(tied.size(), 0.);
+  std::size_t group = moved_by_force(conditions).size();
+  for (const int c : floating_components(conditions)) {
+    share[group] = force[c] / tied.square[group];
+    ++group;
+  }
+  const auto forces = rcp(new Vector(d.owned_dofs));
+  set_members(tied, share, *forces);
+  return forces;
 }
 
 namespace

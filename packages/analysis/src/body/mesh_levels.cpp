@@ -25,6 +25,7 @@ std::vector<fem::DirichletCondition> held_sides(std::vector<fem::DirichletCondit
     for (int c = 0; c < 3; ++c) {
       if (condition.holds(c)) condition.displacement[c] = ScalarField(0.);
       condition.force[c].reset();
+      condition.floats[c] = false;
     }
   for (auto &condition : conditions) condition.rigid.reset();
   return conditions;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/problem.hpp"
 
+#include "body/obstacle_force.hpp"
 #include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/analysis/rules.hpp"
 #include "rpc/analysis/stiffness.hpp"
@@ -61,6 +62,9 @@ std::vector<std::string> varying_loads(const Model &model)
     for (const auto &force : forces)
       if (force && !force->is_constant()) names.push_back('"' + condition.path() + '"');
   }
+  for (const auto &side : model.contact)
+    for (const auto &force : side.obstacle.force)
+      if (force && !force->is_constant()) names.push_back('"' + side.path + "->Obstacle\"");
   return names;
 }
 
@@ -72,7 +76,12 @@ contact::Support support_of(const fem::Discretization &d, const contact::FreePar
     return contact::check_support(d, free_parts, *step.elastic.applied_load, step.contact, now.contact, now.units);
   } catch (const Error &error) { // on all ranks
     const auto loads = varying_loads(now);
-    if (error.code() != ExitCode::no_solution || loads.empty() || step.elastic.applied_load->normInf() > 0) throw;
+    const contact::ContactOptions *const pressed = pressed_by_force(now);
+    const bool is_zero = step.elastic.applied_load->normInf() == 0;
+    if (error.code() == ExitCode::no_solution && pressed && !is_zero)
+      throw Error(error.code(), std::string(error.what()) + " The load is the force on the obstacle of \"" +
+                                    pressed->path + "\", the other way round.");
+    if (error.code() != ExitCode::no_solution || loads.empty() || !is_zero) throw;
     std::ostringstream text;
     text << error.what() << " At t = " << step.time << " the load is zero:";
     for (const std::string &name : loads) text << ' ' << name;
@@ -100,14 +109,20 @@ DeviceView<LO *> nodes_of(const fem::Discretization &d, const std::vector<const 
 
 } // namespace
 
-std::vector<Point> foundations_moved(const Model &model, const double from, const double to)
+std::vector<Point> foundations_moved(const Model &model, const double from, const double to, const Point &before,
+                                     const Point &now)
 {
-  const auto before = model.seen_at(from).contact, now = model.seen_at(to).contact;
-  std::vector<Point> motion(now.size(), Point{});
-  for (std::size_t k = 0; k < now.size(); ++k)
-    for (int c = 0; c < 3 && now[k].obstacle.exists(); ++c)
-      motion[k][c] = now[k].obstacle.point[c] - before[k].obstacle.point[c];
+  const auto a = model.seen_at(from, before).contact, b = model.seen_at(to, now).contact;
+  std::vector<Point> motion(b.size(), Point{});
+  for (std::size_t k = 0; k < b.size(); ++k)
+    if (b[k].obstacle.exists()) motion[k] = difference(b[k].obstacle.point, a[k].obstacle.point);
   return motion;
+}
+
+Point obstacle_displacement(const Model &model, const double t, const Point &obstacle)
+{
+  const auto *const pressed = pressed_by_force(model);
+  return pressed ? foundations_moved(model, 0, t, {}, obstacle)[pressed - model.contact.data()] : Point{};
 }
 
 double time_at_rest(const double first)
@@ -115,7 +130,7 @@ double time_at_rest(const double first)
   return std::min(0., first);
 }
 
-Model Model::seen_at(const double t) const
+Model Model::seen_at(const double t, const Point &obstacle) const
 {
   Model model = *this;
   for (auto &condition : model.dirichlet)
@@ -139,6 +154,7 @@ Model Model::seen_at(const double t) const
     side.friction_limit = side.friction_limit.seen_at(t);
     side.gap = side.gap.seen_at(t);
     side.obstacle = side.obstacle.seen_at(t);
+    for (int c = 0; c < 3 && side.obstacle.is_moved(); ++c) side.obstacle.point[c] += obstacle[c];
   }
   return model;
 }
@@ -149,7 +165,7 @@ Problem::Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, con
 }
 
 Problem::Problem(std::shared_ptr<const NestedMesh> mesh, const Model &model, const double t)
-    : model_(model.seen_at(t)), mesh_(std::move(mesh))
+    : model_(seen_from_obstacle(model.seen_at(t))), mesh_(std::move(mesh))
 {
   const fem::Discretization &d = discretization();
   const auto dirichlet = prescribed_of(d, model_);
@@ -172,29 +188,44 @@ solver::MakeMixedForm Problem::mixed_form() const
   return analysis::mixed_form(mesh_, model_, prescribed_);
 }
 
-Step Problem::step(const double t, const MultiVector *const dents, const Memory *const before) const
+Step Problem::step(const double t, const MultiVector *const dents, const Memory *const before,
+                   const Point *const obstacle) const
 {
   const fem::Discretization &d = discretization();
-  const Model now = model_.seen_at(t);
+  const bool by_force = pressed_by_force(model_) != nullptr;
+  Point moved = before ? before->obstacle : Point{};
+  if (obstacle)
+    moved = *obstacle;
+  else if (by_force && !before)
+    moved = approach(d, model_.seen_at(t));
+  const Model now = model_.seen_at(t, moved);
   auto dirichlet = prescribed_of(d, now);
   const Vector at_rest(d.owned_dofs);
   std::optional<contact::SlipStart> slip_start;
   if (has_friction(now.contact))
-    slip_start.emplace(contact::SlipStart{before ? *before->displacement : at_rest,
-                                          foundations_moved(model_, before ? before->time : time_at_rest(t), t)});
+    slip_start.emplace(
+        contact::SlipStart{before ? *before->displacement : at_rest,
+                           foundations_moved(model_, before ? before->time : time_at_rest(t), t,
+                                             before ? before->obstacle : Point{}, moved)});
   Step step{
       t,
       {},
       contact::contact_nodes(d, now.contact, dirichlet, now.materials, dents, slip_start ? &*slip_start : nullptr),
       {}};
   const auto load = loads_of(d, now);
+  if (by_force) {
+    const auto force = force_on_floating(d, now, *load);
+    step.on_floating = fem::forces_on_floating(d, dirichlet, now.dirichlet, force);
+  }
   fem::add_moving_forces(dirichlet, now.dirichlet, *load);
+  if (by_force) load->update(1., *step.on_floating, 1.);
   step.elastic = fem::elastic_problem(d, couplings_, load, std::move(dirichlet));
   step.elastic.stiffness_of_tied = stiffness_of_tied_;
   require_finite(*step.elastic.load, "the forces of prescribed displacements",
                  [&d] { return fem::node_coordinates(d); });
   step.support = support_of(d, free_parts_, step, now);
   if (before) step.energies_before = before->energy_scale;
+  step.obstacle = moved;
   return step;
 }
 

@@ -2,9 +2,11 @@
 #include "rpc/analysis/load_history.hpp"
 
 #include "body/mean_displacements.hpp"
+#include "body/obstacle_force.hpp"
 #include "rpc/analysis/quantities.hpp"
 #include "rpc/contact/node_columns.hpp"
 #include "rpc/core/interrupt.hpp"
+#include "rpc/core/timed.hpp"
 #include "rpc/fem/rounding.hpp"
 #include "step/step_dents.hpp"
 #include "step/step_energies.hpp"
@@ -75,6 +77,7 @@ StepRecord broken_off(const Model &model, StepRecord until_then, const double t,
   std::array<double, 3> vector{};
   vector.fill(unknown);
   record.side_forces.assign(model.contact.size(), vector);
+  record.obstacle = vector;
   record.displacements.assign(model.dirichlet.size(), vector);
   record.reactions = record.displacements;
   fem::SixNumbers motions{};
@@ -149,6 +152,7 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
     for (std::size_t j = 0; j < rigid.size(); ++j)
       std::copy_n(s.rigid_motions[j].begin(), 3, last_.displacements[rigid[j].condition].begin());
     last_.reactions = s.reactions;
+    last_.obstacle = obstacle_displacement(problem_->model(), t, s.step.obstacle);
     last_.energies = kept_.memory->energies;
   } else {
     last_ = broken_off(s.uzawa.reason);
@@ -224,37 +228,141 @@ StepSolution LoadHistory::advance_in_parts(const double t, const Halvings &left,
   return s;
 }
 
+namespace
+{
+
+/// Whether a force moves an obstacle whose gap is not linear in how far it has moved.
+bool bends(const Model &model)
+{
+  const contact::ContactOptions *const pressed = pressed_by_force(model);
+  return pressed != nullptr && !pressed->obstacle.surface->is_flat;
+}
+
+/// Of a search that is only to find where the next one is to look.
+StepOptions to_look_further(StepOptions options)
+{
+  double &tolerance = options.uzawa.tolerance, &residual = options.newton.residual_tolerance;
+  tolerance = std::max(tolerance, options.prediction.tolerance);
+  residual = std::max(residual, options.prediction.tolerance);
+  options.looks_between_nodes = false;
+  return options;
+}
+
+/// Adds what the searches before have taken and shown.
+void add_searched(const StepSolution &before, StepSolution &s)
+{
+  analysis::add_work(before, s);
+  s.levels = before.levels;
+  s.not_predicted = before.not_predicted;
+  s.found_by = std::max(s.found_by, before.found_by);
+  s.start = before.start;
+  s.from_rest = s.from_rest || before.from_rest;
+  s.raised_penalties = before.raised_penalties;
+}
+
+/// Where searches for the obstacle have not ended.
+void give_up_search(const Point &way, StepSolution &s)
+{
+  s.uzawa.converged = false;
+  std::ostringstream reason;
+  reason << "the obstacle that a force moves has not come to rest in " << step_rules.most_searches
+         << " searches, of which the last has moved it by " << length(way);
+  s.uzawa.reason = reason.str();
+}
+
+} // namespace
+
 StepSolution LoadHistory::solve(const double t, const StepOptions &options, const Progress &progress,
                                 const std::function<void(const Problem &, const Step &)> &now)
 {
   tried_ = t;
-  const auto sides = problem_->model().seen_at(t).contact;
-  const bool on_foundation = kept_.memory && contact::any_moves_with_foundation(sides);
-  const auto met_at = [&](const Vector &u) {
-    return contact::dents_met(problem_->discretization(), sides, kept_.memory->dent, kept_.memory->foundations, u);
+  const Model &model = problem_->model();
+  const bool by_force = pressed_by_force(model) != nullptr;
+  const bool on_foundation = kept_.memory && contact::any_moves_with_foundation(model.contact);
+  const auto met_at = [&](const Vector &u, const Point &obstacle) {
+    return contact::dents_met(problem_->discretization(), model.seen_at(t, obstacle).contact, kept_.memory->dent,
+                              kept_.memory->foundations, u);
   };
   RCP<const MultiVector> met = kept_.memory ? kept_.memory->dent : Teuchos::null;
-  if (on_foundation) met = met_at(moved_along(*problem_, t, *kept_.memory->displacement));
+  if (on_foundation) met = met_at(moved_along(*problem_, t, *kept_.memory->displacement), kept_.memory->obstacle);
   Step step = problem_->step(t, met.get(), memory());
   if (now) now(*problem_, step);
   Starts starts = starts_of(step);
+  Progress reports = progress;
+  double prediction_seconds = 0;
+  if (by_force) {
+    if (reports.start) reports.start(*problem_, step);
+    reports.start = {};
+    const Timed timer("prediction", prediction_seconds);
+    foresee(met.get(), step, starts);
+  }
   ++last_.parts;
   StepSolution s;
+  std::optional<StepSolution> searched; // what the searches before have taken
   Headway searches({1, Headway::unlimited, Headway::unlimited, step_rules.most_searches - 1});
   while (true) {
-    s = solve_step(*problem_, step, *state_, options, starts, progress);
+    const bool is_rough = !searched && bends(model);
+    s = solve_step(*problem_, step, *state_, is_rough ? to_look_further(options) : options, starts, reports);
     ++last_.solves;
     add_work(s, last_);
+    s.prediction_seconds += std::exchange(prediction_seconds, 0);
+    const Point way = left_to_go(*problem_, s);
+    const bool rests = !is_rough && obstacle_rests(*problem_, s, options.uzawa.tolerance);
+    if (by_force) take_to_obstacle(way, s);
+    if (searched) add_searched(*searched, s);
     if (!s.uzawa.converged) return s;
-    if (!on_foundation || searches.take(true) == Headway::Answer::stuck) break;
-    const auto next = met_at(*s.u);
-    if (settled(*met, *next, kept_.memory->foundations)) break;
+    if ((!on_foundation && rests) || searches.take(true) == Headway::Answer::stuck) {
+      if (!rests) give_up_search(way, s);
+      break;
+    }
+    const auto next = on_foundation ? met_at(*s.u, s.step.obstacle) : met;
+    if (rests && (!on_foundation || settled(*met, *next, kept_.memory->foundations))) break;
     met = next;
-    step = problem_->step(t, met.get(), memory());
-    starts = {{s.state}, {}};
+    step = problem_->step(t, met.get(), memory(), by_force ? &s.step.obstacle : nullptr);
+    starts = {{onto(s.step.contact, step.contact, s.state)}, {}};
+    if (by_force) searched = s;
   }
-  remember(t, sides, step, s);
+  if (s.uzawa.converged) remember(t, model.seen_at(t, s.step.obstacle).contact, step, s);
   return s;
+}
+
+/// Asks coarser meshes how far a force will have moved its obstacle, and makes the step there.                    (3.17c)
+void LoadHistory::foresee(const MultiVector *const met, Step &step, Starts &starts)
+{
+  if (!starts.predict) return;
+  Prediction predicted = starts.predict();
+  if (predicted.start) {
+    const Point from = step.obstacle, way = difference(from, predicted.obstacle);
+    const contact::ContactNodes points = step.contact;
+    step = problem_->step(step.time, met, memory(), &predicted.obstacle);
+    const int dim = problem_->discretization().dim();
+    for (auto &state : starts.states) state = onto(points, step.contact, shifted(std::move(state), way, dim));
+    predicted.start = onto(points, step.contact, *std::move(predicted.start));
+  }
+  starts.predict = [predicted] { return predicted; };
+}
+
+/// A state at the contact points of another place of the obstacle.
+contact::ContactState LoadHistory::onto(const contact::ContactNodes &from, const contact::ContactNodes &to,
+                                        contact::ContactState state) const
+{
+  if (pressed_by_force(problem_->model()) == nullptr) return state;
+  const auto owned_nodes = problem_->discretization().mesh->owned_nodes;
+  auto &multiplier = state.multiplier;
+  multiplier.normal = contact::at_points(to, *contact::node_columns(from, multiplier.normal, owned_nodes));
+  if (max_all(problem_->discretization().mesh->comm(), static_cast<int>(multiplier.has_tangential())) > 0)
+    multiplier.tangential =
+        contact::vectors_at_points(to, *contact::node_columns(from, multiplier.tangential, owned_nodes));
+  state.active_set = {};
+  return state;
+}
+
+/// The solution, seen from where the body is held, and the obstacle where that has led it.
+void LoadHistory::take_to_obstacle(const Point &way, StepSolution &s) const
+{
+  for (int c = 0; c < 3; ++c) s.step.obstacle[c] += way[c];
+  s.state = shifted(std::move(s.state), way, problem_->discretization().dim());
+  s.u = s.state.displacement;
 }
 
 /// The last state, the extrapolated one, rest, and what coarser meshes predict; without a last state the latter alone.
@@ -264,7 +372,7 @@ Starts LoadHistory::starts_of(const Step &step)
   if (kept_.memory) {
     starts.states.push_back(state_of(step.contact, *kept_.memory));
     if (kept_.before && kept_.before->time < kept_.memory->time)
-      starts.states.push_back(extrapolated(step.contact, *kept_.before, *kept_.memory, step.time));
+      starts.states.push_back(extrapolated(step.contact, *kept_.before, *kept_.memory, step.time)); // of that obstacle, too
     starts.states.push_back(at_rest(step.contact, problem_->discretization()));
   }
   if (kept_.memory || starts.states.empty())
@@ -282,6 +390,7 @@ void LoadHistory::remember(const double t, const std::vector<contact::ContactOpt
   now.time = t;
   now.displacement = s.u;
   if (step.contact.friction.anywhere) now.displacement = contact::on_foundation(step.contact, s.state); // (12.14)
+  now.obstacle = s.step.obstacle;
   now.pressure = contact::node_columns(step.contact, s.contact.pressure, owned_nodes);
   now.gap = contact::node_columns(step.contact, moving_gap(*problem_, step.contact, s.contact.dent), owned_nodes);
   now.energies = energies_after(*problem_, t, s, memory(), kept_.last_forces.get(), *forces);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/run.hpp"
 
+#include "body/obstacle_force.hpp"
 #include "rpc/analysis/rules.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/interrupt.hpp"
@@ -311,15 +312,19 @@ Solution solve_on(const Task &task, const MadeMesh &made, const Solution *const 
                                            step.contact, d.owned_dofs));
   }
   const auto coarser = coarser_meshes(task, made.options, comm);
-  if (!task.has_steps()) {
+  StepOptions last_resort = task.step;
+  last_resort.low_penalties = true;
+  if (!task.has_steps() && pressed_by_force(task.model)) {
+    LoadHistory history(problem, task.step, 0, task.linear_solver, coarser);
+    static_cast<StepSolution &>(s) = history.solve(task.time, last_resort, listener.step, {});
+    s.body = fem::body_peaks(d, task.model.materials, *s.u);
+  } else if (!task.has_steps()) {
     SolverState state(*problem, task.linear_solver);
     Starts from{starts, {}};
     if (starts.empty())
       from.predict = [&] { // the coarser scenes go before the finest one is solved
         return Predictor(coarser, task.step, task.linear_solver).predict(*problem, step, nullptr);
       };
-    StepOptions last_resort = task.step;
-    last_resort.low_penalties = true;
     static_cast<StepSolution &>(s) = solve_step(*problem, step, state, last_resort, from, listener.step);
     s.body = fem::body_peaks(d, task.model.materials, *s.u);
   } else {

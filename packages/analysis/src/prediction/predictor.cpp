@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/predictor.hpp"
 
+#include "body/obstacle_force.hpp"
 #include "rpc/analysis/load_history.hpp"
 #include "rpc/analysis/rules.hpp"
 #include "rpc/core/error.hpp"
@@ -143,14 +144,14 @@ Prediction Predictor::from_rest(const Problem &fine, const Step &step)
   const double start = Teuchos::Time::wallTime();
   LoadHistory &history = coarser_->history;
   StepOptions once = rough_;
-  once.uzawa.max_iterations = 1;
+  if (pressed_by_force(fine.model()) == nullptr) once.uzawa.max_iterations = 1; // else it is to find the obstacle
   const StepSolution coarse = history.solve(step.time, once, {}, {});
   const Problem &problem = history.problem();
   const auto state =
       contact::with_weightless(coarse.state, coarse.step.contact, problem.discretization(), problem.contact_sides());
   return {contact::interpolated(*coarser_->to_fine, coarse.step.contact, state, step.contact,
                                 fine.discretization().owned_dofs),
-          "", told_by(coarse, scene_of_choices(), level_, fine), work_of(coarse, start)};
+          "", told_by(coarse, scene_of_choices(), level_, fine), work_of(coarse, start), 0, coarse.step.obstacle};
 }
 
 /// A later step: what it changes.                                                                                (11.5)
@@ -183,8 +184,14 @@ Prediction Predictor::from_last(const Problem &fine, const Step &step, const Mem
   };
   predicted.pressure = changed(*now.pressure, *before.pressure, *last.pressure);
   if (!last.tangential.is_null()) predicted.tangential = changed(*now.tangential, *before.tangential, *last.tangential);
-  return {state_of(step.contact, predicted), "", told_by(coarse, scene_of_choices(), level_, fine),
-          work_of(coarse, start)};
+  Point obstacle = last.obstacle;
+  for (int c = 0; c < 3; ++c) obstacle[c] += now.obstacle[c] - before.obstacle[c];
+  return {state_of(step.contact, predicted),
+          "",
+          told_by(coarse, scene_of_choices(), level_, fine),
+          work_of(coarse, start),
+          0,
+          obstacle};
 }
 
 } // namespace rpc::analysis

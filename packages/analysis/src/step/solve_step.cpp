@@ -4,6 +4,7 @@
 #include "rpc/analysis/solve_step.hpp"
 
 #include "body/mean_displacements.hpp"
+#include "body/obstacle_force.hpp"
 #include "rpc/analysis/active_set.hpp"
 #include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/analysis/rules.hpp"
@@ -46,7 +47,6 @@ contact::OptimalityResiduals judge(const Problem &problem, const Step &step, con
 void tell_want_of_friction(UzawaResult &uzawa, const Problem &problem);
 void read_results(const Problem &problem, const StepOptions &options, StepSolution &s);
 solver::LinearSolverCounts counts_since(const solver::LinearSolverCounts &before, solver::LinearSolverCounts now);
-void add_work(const StepSolution &other, StepSolution &s);
 
 StepSolution solve_with(const Problem &problem, const Step &step, SolverState &state, const StepOptions &options,
                         const bool low_penalties, const Starts &starts, const Progress &progress)
@@ -337,6 +337,7 @@ std::vector<std::array<double, 3>> reactions(const Problem &problem, StepSolutio
   const fem::Discretization &d = problem.discretization();
   Vector out_of_balance(*s.uzawa.residuals.forces, Teuchos::Copy);
   out_of_balance.update(-1., *elastic.applied_load, -1., contact::contact_forces(d, s.step.contact, s.contact), 1.);
+  if (!s.step.on_floating.is_null()) out_of_balance.update(1., *s.step.on_floating, 1.); // which is no load (3.17)
   const Model now = problem.model().seen_at(s.step.time);
   auto forces = fem::reaction_forces(d, elastic.dirichlet, static_cast<int>(now.dirichlet.size()), out_of_balance);
   for (const auto &[k, c] : fem::moved_by_force(now.dirichlet)) forces[k][c] += (*now.dirichlet[k].force[c])({});
@@ -352,14 +353,14 @@ std::vector<std::array<double, 3>> reactions(const Problem &problem, StepSolutio
 }
 
 /// How far forces have moved sides, and the sides' other means. @throws rpc::Error (bad_input) where a node that moves so touches; collective
-void read_tied(const Problem &problem, StepSolution &s)
+void read_tied(const Problem &problem, const StepOptions &options, StepSolution &s)
 {
   const fem::DirichletDofs &dirichlet = s.step.elastic.dirichlet;
   s.rigid_motions.clear();
   for (const fem::RigidSide &side : dirichlet.rigid) s.rigid_motions.push_back(fem::motions_of(side, *s.u));
   if (!dirichlet.tied) return;
   const auto &conditions = problem.model().dirichlet;
-  if (s.uzawa.converged)
+  if (s.uzawa.converged && obstacle_rests(problem, s, options.uzawa.tolerance))
     contact::settle_tied_points(problem.discretization(), s.step.contact, dirichlet, problem.model().contact, s.state);
   s.displacements = MeanDisplacements(problem)(*s.u);
   const auto moved = means(*dirichlet.tied, *s.u);
@@ -369,23 +370,33 @@ void read_tied(const Problem &problem, StepSolution &s)
     std::copy_n(s.rigid_motions[j].begin(), 3, s.displacements[dirichlet.rigid[j].condition].begin());
 }
 
+/// Of the loads along the displacement, seen from where the body is held.
+double work_of_loads(const Problem &problem, const StepSolution &s)
+{
+  const Vector &load = *s.step.elastic.applied_load;
+  if (s.step.on_floating.is_null()) return load.dot(*s.state.displacement);
+  const auto u = shifted(*s.state.displacement, left_to_go(problem, s), problem.discretization().dim());
+  return load.dot(*u) - s.step.on_floating->dot(*u);
+}
+
 void read_results(const Problem &problem, const StepOptions &options, StepSolution &s)
 {
-  read_tied(problem, s);
+  read_tied(problem, options, s);
   s.contact = contact::contact_result(problem.discretization(), problem.contact_sides(), s.step.contact, s.state,
                                       contact::has_friction(problem.model().contact));
   if (options.looks_between_nodes)
     contact::look_between_nodes(problem.discretization(), problem.contact_sides(),
-                                problem.model().seen_at(s.step.time).contact, s.step.contact, problem.model().materials,
-                                *s.state.displacement, s.contact); // (3.15)
+                                problem.model().seen_at(s.step.time, s.step.obstacle).contact, s.step.contact,
+                                problem.model().materials, *s.state.displacement, s.contact); // (3.15)
   s.energy_norm_squared = s.uzawa.residuals.internal.energy_norm_squared;
-  const double elastic = 0.5 * s.energy_norm_squared - s.step.elastic.applied_load->dot(*s.state.displacement) +
+  const double elastic = 0.5 * s.energy_norm_squared - work_of_loads(problem, s) +
                          fem::spring_energy(s.step.elastic.dirichlet.rigid, *s.u); // (1.2), (2.9c)
   s.energy = contact::energy(elastic, s.step.contact, s.state);                    // paper (6); (5.14)
   s.reactions = reactions(problem, s);
 }
 
-/// s <- what another attempt at the same step took, too.
+} // namespace
+
 void add_work(const StepSolution &other, StepSolution &s)
 {
   s.prediction_seconds += other.prediction_seconds;
@@ -401,6 +412,9 @@ void add_work(const StepSolution &other, StepSolution &s)
   s.linear.setup_seconds += other.linear.setup_seconds;
   s.linear.solve_seconds += other.linear.solve_seconds;
 }
+
+namespace
+{
 
 /// What the linear solver has done since.
 solver::LinearSolverCounts counts_since(const solver::LinearSolverCounts &before, solver::LinearSolverCounts now)

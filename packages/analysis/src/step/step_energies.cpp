@@ -3,6 +3,8 @@
 
 #include "rpc/contact/node_columns.hpp"
 
+#include <algorithm>
+
 namespace rpc::analysis
 {
 namespace
@@ -39,19 +41,17 @@ double work_of_motion(const Comm &comm, const contact::ContactNodes &contact, co
   return sum_all(comm, sum);
 }
 
-/// Whether an obstacle is elsewhere at another time.
-bool moves_between(const Model &model, const double t, const double other)
+/// Whether an obstacle is elsewhere than before.
+bool has_moved(const Model &model, const Memory &before, const double t, const Point &obstacle)
 {
-  const auto a = model.seen_at(t).contact, b = model.seen_at(other).contact;
-  for (std::size_t k = 0; k < a.size(); ++k)
-    if (a[k].obstacle.exists() && a[k].obstacle.point != b[k].obstacle.point) return true;
-  return false;
+  const auto motion = foundations_moved(model, before.time, t, before.obstacle, obstacle);
+  return std::any_of(motion.begin(), motion.end(), [](const Point &each) { return each != Point{}; });
 }
 
-/// The contact points of another time, without dents; collective.
-contact::ContactNodes points_at(const Problem &problem, const double t)
+/// The contact points of a step that is remembered, without dents; collective.
+contact::ContactNodes points_of(const Problem &problem, const Memory &before)
 {
-  const Model model = problem.model().seen_at(t);
+  const Model model = problem.model().seen_at(before.time, before.obstacle);
   const fem::Discretization &d = problem.discretization();
   return contact::contact_nodes(d, model.contact, fem::dirichlet_dofs(d, model.dirichlet), model.materials);
 }
@@ -192,8 +192,8 @@ Energies energies_after(const Problem &problem, const double t, const StepSoluti
   mean.scale(0.5);
   DeviceView<double *> pressure("rpc::analysis::no_pressure", points.size()), before_gap;
   if (before) {
-    const bool moves = moves_between(problem.model(), t, before->time);
-    const contact::ContactNodes points_before = moves ? points_at(problem, before->time) : points;
+    const bool moves = has_moved(problem.model(), *before, t, s.step.obstacle);
+    const contact::ContactNodes points_before = moves ? points_of(problem, *before) : points;
     mean.update(0.5, force_before ? *force_before : other_forces_before(problem, points_before, *before), 1.);
     moved.update(-1., *before->displacement, 1.);
     pressure = contact::at_points(points, *before->pressure);

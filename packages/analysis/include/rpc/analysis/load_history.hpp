@@ -53,6 +53,7 @@ struct StepRecord {
   std::vector<std::array<double, 3>> displacements;         ///< means over the place of each Dirichlet condition [m]
   std::vector<std::array<double, 3>> reactions;             ///< as in StepSolution
   std::vector<fem::SixNumbers> rigid_motions, rigid_forces; ///< as in StepSolution
+  std::array<double, 3> obstacle{}; ///< how far the obstacle that a force moves is from where it was at t = 0 [m]
   int newton_iterations = 0, linear_solves = 0, linear_iterations = 0, preconditioner_setups = 0;
   double seconds = 0;
 };
@@ -129,6 +130,10 @@ private:
                                 const std::function<void(const Problem &, const Step &)> &now);
   double share_missed(const Energies &before, const StepSolution &s, double tolerance) const;
   Starts starts_of(const Step &step);
+  void foresee(const MultiVector *met, Step &step, Starts &starts);
+  contact::ContactState onto(const contact::ContactNodes &from, const contact::ContactNodes &to,
+                             contact::ContactState state) const;
+  void take_to_obstacle(const Point &way, StepSolution &s) const;
   void remember(double t, const std::vector<contact::ContactOptions> &sides, const Step &step, StepSolution &s);
 
   std::shared_ptr<const Problem> problem_;

@@ -37,6 +37,7 @@ struct Memory {
   RCP<const MultiVector>
       tangential; ///< (owned nodes; sides x dim) multipliers along the side [Pa]; null: the law has none
   std::vector<contact::FoundationDents> foundations; ///< by side; empty: none has a dent
+  Point obstacle{};                                  ///< how far a force has moved its obstacle [m]
 };
 
 /// What is remembered, on another mesh of the same body: by interpolation; dents stay >= 0. Collective.

@@ -30,7 +30,8 @@ struct Model {
   UnitNames units;                              ///< of all its numbers
 
   /// The same, with all fields seen at one time.
-  Model seen_at(double t) const;
+  /// @param obstacle  how far a force has moved its obstacle then [m]
+  Model seen_at(double t, const Point &obstacle = {}) const;
 };
 
 /// When body and foundation are at rest as they are given, before a first step: at t = 0, for the step begins there; or when it ends, if
@@ -38,7 +39,12 @@ struct Model {
 /// @param first  time of the first step
 double time_at_rest(double first);
 /// How far each side's foundation moves from one time to another [m].
-std::vector<Point> foundations_moved(const Model &model, double from, double to);
+/// @param before, now  how far a force has moved its obstacle at these times [m]
+std::vector<Point> foundations_moved(const Model &model, double from, double to, const Point &before = {},
+                                     const Point &now = {});
+/// How far the obstacle that a force moves is from where it was at t = 0 [m]; 0 where there is none.
+/// @param obstacle  what the force has moved it by [m]
+Point obstacle_displacement(const Model &model, double t, const Point &obstacle);
 
 /// What acts on a body at one time: cheap to make again. Plain data.
 struct Step {
@@ -47,6 +53,8 @@ struct Step {
   contact::ContactNodes contact; ///< with the gap and the yield stress of the time
   contact::Support support;      ///< what holds the body
   double energies_before = 0;    ///< S of (5.5b), of the steps before [J], in 2D per m
+  Point obstacle{};              ///< how far a force has moved its obstacle [m]: where the contact points are seen
+  RCP<const Vector> on_floating = {}; ///< (owned dofs) forces that stand for that on the obstacle [N]; null: there is none
 };
 
 /// A body on its mesh: what stays from step to step, made once. Nothing of it changes while steps are solved: that is SolverState's.
@@ -64,8 +72,10 @@ public:
   /// Loads, prescribed displacements and contact nodes at one time. Collective.
   /// @param dents   that earlier steps have left, (owned nodes; sides) [m]; null: none
   /// @param before  what the step before has left, from which slip counts; null: body and foundation were at rest
+  /// @param obstacle  how far a force has moved its obstacle [m]; null: as far as in the step before, or until it meets the side
   /// @throws rpc::Error bad_input as above; no_solution where nothing holds the body, see contact::check_support()
-  Step step(double t, const MultiVector *dents = nullptr, const Memory *before = nullptr) const;
+  Step step(double t, const MultiVector *dents = nullptr, const Memory *before = nullptr,
+            const Point *obstacle = nullptr) const;
   fem::DirichletDofs dirichlet(double t) const; ///< of step(t), alone
   /// The same scene on one of the boxes that this one leads to: the first that has at most a `factor`-th of its cells along the direction
   /// with most; of a mesh with parents the first one with cells `factor` times as long, in space half of that, or the coarsest. Null where there is none, and for boxes

@@ -71,6 +71,7 @@ struct Prediction {
   PredictedBy by;
   std::vector<LevelWork> work; ///< on the meshes that were asked, from the coarsest
   std::size_t nearest = 0;     ///< which of the given states is nearest to equilibrium
+  Point obstacle{};            ///< how far a force has moved its obstacle there [m]
 };
 
 /// Where a step may start from.
@@ -107,6 +108,9 @@ struct StepSolution {
   std::string not_predicted;                        ///< why no coarser mesh did; empty if one did
   double prediction_seconds = 0, solve_seconds = 0; ///< solve: without set-ups of multigrid
 };
+
+/// s <- what another attempt at the same step took, too.
+void add_work(const StepSolution &other, StepSolution &s);
 
 /// The algorithm: predict; repeat { choose states; solve; update multipliers }; judge. Collective.
 /// @param state  the problem's, which may come from steps before

@@ -20,10 +20,13 @@ struct Obstacle {
   std::array<ScalarField, 3> path =
       {};         ///< coordinates of `point` that change with time [m]; constant ones are not read
   Point origin{}; ///< where `point` is at t = 0 [m]
+  /// Along a coordinate, the force that moves it [N], of time alone; nothing: it follows its path.        doc/theory.md (3.17)
+  std::array<std::optional<ScalarField>, 3> force = {};
 
   bool exists() const { return surface.has_value(); }
-  bool moves() const; ///< with time
-  /// The same, with `point` where it is at a time.
+  bool is_moved() const { return force[0] || force[1] || force[2]; } ///< by a force
+  bool moves() const;                                                ///< with time, or by a force
+  /// The same, with `point` where its path has it at a time.
   Obstacle seen_at(double t) const;
 };
 

@@ -27,6 +27,8 @@ struct DirichletCondition {
   /// On the whole side, which moves along that component as one [N]; of time alone.
   std::array<std::optional<ScalarField>, 3> force{};
   std::optional<RigidMotions> rigid{}; ///< instead of both, for an entry of `Rigid`
+  /// Components along which all sides that are held at 0 move as one, by one force: seen from an obstacle that a force moves.   (3.17)
+  std::array<bool, 3> floats{};
 
   /// Whether the side's nodes are not free along a component.
   bool holds(const int component) const { return rigid || displacement[component] || force[component]; }
@@ -67,7 +69,7 @@ struct DirichletDofs {
   RCP<Vector> value; ///< (owned dofs) [m], 0 where free
   GO num_fixed = 0;  ///< over all ranks
   std::shared_ptr<const TiedUnknowns>
-      tied;                     ///< those that a force moves, a group for each component of a side; null: none
+      tied; ///< those that forces move, a group for each component of a side, for each component along which sides float, and for each motion of a rigid side; null: none
   std::vector<RigidSide> rigid; ///< of the deck's `Rigid`
 };
 
@@ -134,6 +136,14 @@ void add_moving_forces(const DirichletDofs &dirichlet, const std::vector<Dirichl
 
 /// Forces and moments that the deck gives a rigid side at its time. @throws rpc::Error (bad_input) if one is not finite
 SixNumbers given_forces(const DirichletCondition &condition);
+
+/// Components along which held sides float, ascending.
+std::vector<int> floating_components(const std::vector<DirichletCondition> &conditions);
+
+/// (owned dofs) Forces on sides that float, in equal parts on their nodes. Collective.
+/// @param force  along each component [N]
+RCP<Vector> forces_on_floating(const Discretization &d, const DirichletDofs &dirichlet,
+                               const std::vector<DirichletCondition> &conditions, const std::array<double, 3> &force);
 
 /// The stiffness with tied unknowns, springs included; null where there are none. Collective.                                       (2.9a)
 /// @param K  the same, all prescribed unknowns eliminated

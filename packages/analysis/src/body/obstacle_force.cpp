@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "body/obstacle_force.hpp"
+
+#include "rpc/core/dofs.hpp"
+#include "rpc/core/error.hpp"
+#include "rpc/core/parallel.hpp"
+#include "rpc/fem/surface.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+namespace rpc::analysis
+{
+namespace
+{
+
+constexpr char component_letter[] = "XYZ";
+
+/// `"Contact->Obstacle->Force Y"`, in quotation marks.
+std::string force_parameter(const contact::ContactOptions &side, const int c)
+{
+  return '"' + side.path + "->Obstacle->Force " + component_letter[c] + '"';
+}
+
+} // namespace
+
+const contact::ContactOptions *pressed_by_force(const Model &model)
+{
+  const auto found = std::find_if(model.contact.begin(), model.contact.end(),
+                                  [](const auto &side) { return side.obstacle.is_moved(); });
+  return found == model.contact.end() ? nullptr : &*found;
+}
+
+Model seen_from_obstacle(Model model)
+{
+  const contact::ContactOptions *const pressed = pressed_by_force(model);
+  if (pressed == nullptr) return model;
+  for (const auto &other : model.contact)
+    RPC_REQUIRE(&other == pressed,
+                "deck: \"" << pressed->path << "->Obstacle\" is moved by a force, and \"" << other.path
+                           << "\" is another foundation, which is not supported: only supports of \"Dirichlet\" may "
+                              "hold the body against it. Hold the side \""
+                           << other.side
+                           << "\" in \"Dirichlet\", or press the body with a force there, "
+                              "\"Dirichlet->NAME->Force Y\", and leave the obstacles at rest.");
+  for (int c = 0; c < 3; ++c) {
+    if (!pressed->obstacle.force[c]) continue;
+    const std::string parameter = force_parameter(*pressed, c);
+    RPC_REQUIRE(model.kinematics != fem::Kinematics::axisymmetric || c == 1,
+                "deck: " << parameter
+                         << " moves the obstacle of a body of revolution off its axis. Give Force Y, along the axis.");
+    bool held = false;
+    for (auto &condition : model.dirichlet) {
+      RPC_REQUIRE(!condition.rigid, "deck: " << parameter << " moves the obstacle, and \"" << condition.path()
+                                             << "\" is a rigid side, which is not supported together. Press the body "
+                                                "by \"Force "
+                                             << component_letter[c]
+                                             << "\" of the rigid side, and leave the obstacle at rest.");
+      RPC_REQUIRE(!condition.force[c], "deck: " << parameter << " and \"Dirichlet->" << condition.name << "->Force "
+                                                << component_letter[c]
+                                                << "\" are both to move along one direction, along which nothing is "
+                                                   "held then. Leave one of them out.");
+      condition.floats[c] = condition.displacement[c].has_value();
+      held = held || condition.floats[c];
+    }
+    RPC_REQUIRE(held, "deck: " << parameter << " presses a body that nothing holds along " << component_letter[c]
+                               << ". Hold a side: \"Dirichlet->NAME->" << component_letter[c] << "\" = 0.");
+  }
+  return model;
+}
+
+std::array<double, 3> force_on_floating(const fem::Discretization &d, const Model &now, const Vector &load)
+{
+  const contact::ContactOptions &pressed = *pressed_by_force(now);
+  std::vector<double> sum(3, 0.);
+  const auto from = load.getLocalViewHost(Tpetra::Access::ReadOnly);
+  for (std::size_t i = 0; i < from.extent(0); ++i) sum[component_of(d.dim(), static_cast<LO>(i))] += from(i, 0);
+  sum = summed(d.mesh->comm(), sum);
+  std::array<double, 3> force{};
+  for (int c = 0; c < 3; ++c) {
+    if (!pressed.obstacle.force[c]) continue;
+    const double given = (*pressed.obstacle.force[c])({});
+    RPC_REQUIRE(std::isfinite(given), "deck: " << force_parameter(pressed, c) << " must be finite, got " << given
+                                               << " from " << pressed.obstacle.force[c]->text
+                                               << " at t = " << pressed.obstacle.force[c]->time);
+    force[c] = -(given + sum[c]); // (3.17b)
+  }
+  return force;
+}
+
+Point approach(const fem::Discretization &d, const Model &now)
+{
+  const contact::ContactOptions &pressed = *pressed_by_force(now);
+  Point along{};
+  for (int c = 0; c < d.dim(); ++c)
+    if (pressed.obstacle.force[c]) along[c] = (*pressed.obstacle.force[c])({});
+  const double size = length(along);
+  if (!(size > 0) || !std::isfinite(size)) return {}; // refused as a load that presses nothing
+  const Point towards = scaled(-1 / size, along);     // of the body, seen from the obstacle
+  const auto sides = contact::contact_sides(*d.mesh, now.contact);
+  const HostPoints x = fem::node_positions(*d.mesh, fem::surface_nodes(d, *sides.front()).node);
+  constexpr double nowhere = std::numeric_limits<double>::infinity();
+  double way = nowhere;
+  for (std::size_t n = 0; n < x.extent(0); ++n) {
+    Point place{};
+    for (int c = 0; c < d.dim(); ++c) place[c] = x(n, c);
+    if (const auto distance = contact::distance_along(pressed.obstacle, place, towards))
+      way = std::min(way, *distance);
+  }
+  way = min_all(d.mesh->comm(), way);
+  if (way == nowhere) {
+    std::ostringstream text;
+    text << "contact: the force of \"" << pressed.path << "->Obstacle\" moves the obstacle along (" << along[0] / size
+         << ", " << along[1] / size << (d.dim() == 3 ? ", " : "");
+    if (d.dim() == 3) text << along[2] / size;
+    text << "), and on that way it meets no node of side \"" << pressed.side
+         << "\". Turn the force round, or move the obstacle's \"" << contact::point_name(pressed.obstacle)
+         << "\" to where it faces the side.";
+    throw Error(ExitCode::no_solution, text.str());
+  }
+  return scaled(-way, towards);
+}
+
+Point left_to_go(const Problem &problem, const StepSolution &s)
+{
+  Point way{};
+  const auto &conditions = problem.model().dirichlet;
+  const auto floating = fem::floating_components(conditions);
+  if (floating.empty()) return way;
+  const std::size_t before = fem::moved_by_force(conditions).size();
+  const auto moved = means(*s.step.elastic.dirichlet.tied, *s.u);
+  for (std::size_t j = 0; j < floating.size(); ++j) way[floating[j]] = -moved[before + j];
+  return way;
+}
+
+bool obstacle_rests(const Problem &problem, const StepSolution &s, const double tolerance)
+{
+  return !(length(left_to_go(problem, s)) > tolerance * s.u->normInf());
+}
+
+RCP<const Vector> shifted(const Vector &u, const Point &shift, const int dim)
+{
+  const auto moved = rcp(new Vector(u, Teuchos::Copy));
+  const auto to = device_write(*moved);
+  const double by[3] = {shift[0], shift[1], shift[2]};
+  Kokkos::parallel_for(
+      "rpc::analysis::shifted", device_range(static_cast<LO>(u.getLocalLength())),
+      KOKKOS_LAMBDA(const LO i) { to(i) += by[component_of(dim, i)]; });
+  Kokkos::fence();
+  return moved;
+}
+
+contact::ContactState shifted(contact::ContactState state, const Point &shift, const int dim)
+{
+  state.displacement = shifted(*state.displacement, shift, dim);
+  state.rest = Teuchos::null;
+  return state;
+}
+
+} // namespace rpc::analysis
