@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Random bodies that a force presses, against the same bodies that a displacement presses.
 
-    python3 forces.py --rpc=build/rpc [--seed=1] [--scenes=50] [--only=K] [--jobs=2] [--keep=DIR]
+    python3 forces.py --rpc=build/rpc [--moved=side] [--seed=1] [--scenes=50] [--only=K] [--jobs=2] [--keep=DIR]
 
 Scene K comes from the seed and K alone: a box in the plane, of revolution or in space, whose top is held rigid, on an obstacle or a foundation with a
 gap, rigid or yielding, hardening or on springs, some with friction, some in load steps. The top is first moved by a displacement; then the force
-that this took, of each step, moves it. Told are failures: the displacement that comes back differs by more than 1e-10 of the given one, or a run
+that this took, of each step, moves it. With --moved=obstacle the body is held, and an obstacle of a random shape is moved. Told are failures: the displacement that comes back differs by more than 1e-10 of the given one, or a run
 does not end as it should; where the foundation carries no more than the given force, it must be refused with exit code 5. Where all that touches yields, and does not harden, a force does not determine the displacement:
 such scenes must end, and their displacements are not compared. Told are the Newton steps of the two ways. The exit code is 1 if a scene failed, or the median of the ratio of Newton steps is above 1.2.
 """
@@ -89,6 +89,59 @@ def scene(seed, number):
     return deck, times
 
 
+def shape(rng, kind, width, depth, dim):
+    """(name of its point, parameters) of an obstacle that lies below y = 0 and touches it"""
+    middle = 0.0 if kind == "axisymmetric" else width * rng.uniform(0.3, 0.7)
+    radius, up, across = width * log_uniform(rng, -0.15, 0.7), [0.0, 1.0] + [0.0] * (dim - 2), [0.0] * (dim - 2) + [0.0, 0.0]
+    place = lambda y: [middle, y] + [0.5] * (dim - 2)
+    of = rng.choice(["plane", "plane", "sphere", "sphere", "ellipsoid", "cone", "wedge", "flat punch"])
+    if of == "plane":
+        lean = 0.0 if kind == "axisymmetric" else rng.choice([0.0, rng.uniform(-0.3, 0.3) * depth / width])
+        return "Point", place(-abs(lean) * width), {"Type": of, "Normal": [lean, *up[1:]]}
+    if of == "sphere":
+        return "Centre", place(-radius), {"Type": of, "Radius": radius}
+    if of == "ellipsoid":
+        axes = [radius * rng.uniform(0.5, 1), radius] + [radius * rng.uniform(0.5, 1)] * (dim - 2)
+        across[0] = 1.0
+        return "Centre", place(-axes[1]), {"Type": of, "Axis": across, "Semi-Axes": axes, **({"Second Axis": up} if dim == 3 else {})}
+    if of == "cone" or (of == "wedge" and kind == "axisymmetric"):
+        return "Point", place(0.0), {"Type": "cone", "Axis": up, "Slope": rng.uniform(0.02, 0.2), "Tip Radius": radius}
+    if of == "wedge":
+        across[-1] = 1.0
+        along = {"Axis": across} if dim == 3 else {}
+        return "Point", place(0.0), {"Type": of, "Normal": up, "Slope": rng.uniform(0.02, 0.2), "Edge Radius": radius, **along}
+    half = 0.3 * width
+    return "Point", place(0.0), {"Type": of, "Normal": up, "Radius": half, "Edge Radius": half * rng.uniform(0.5, 1)}
+
+
+def with_tool(seed, number):
+    """The same body, held at its top, on an obstacle that moves up: (deck, times, path, direction of the force)"""
+    deck, times = scene(seed, number)
+    rng = random.Random(f"tools {seed} {number}")
+    kind, dim = deck.get("Kinematics", "space"), len(deck["Mesh"]["Upper"])
+    path = deck["Dirichlet"]["top"]["Y"].replace("-", "", 1)
+    if not times:
+        path += "*t"
+    top = max(abs(eval_at(path, t)) for t in times or [1.0])
+    contact = deck["Contact"]
+    contact.pop("Gap", None)
+    point, place, parameters = shape(rng, kind, deck["Mesh"]["Upper"][0], top, dim)
+    place[1] -= rng.choice([0.0, 0.0, 0.3 * top])
+    contact["Obstacle"] = {**parameters, point: [repr(x) if c != 1 else f"{x!r} + {path}" for c, x in enumerate(place)]}
+    if parameters["Type"] == "flat punch":
+        contact["Normal"] = "surface"
+    deck["Dirichlet"]["top"] = {"X": 0.0, "Y": 0.0, **({"Z": 0.0} if dim == 3 else {})}
+    deck["Dirichlet"].pop("corner", None)
+    return deck, times, path, point
+
+
+def eval_at(path, t):
+    """A path of scene() at a time."""
+    factor, _, rest = path.partition("*")
+    along = t if rest in ("", "t") else (t if t < 1 else 1 - 0.3 * (t - 1) if t < 1.5 else 0.85 + 0.6 * (t - 1.5))
+    return float(factor) * along
+
+
 def run(rpc, deck, folder, name):
     """(exit code, summary or None, rows of the history, last words)"""
     path = pathlib.Path(folder) / f"{name}.yaml"
@@ -119,44 +172,64 @@ def steps_of(summary):
     return sum(step["newton_iterations"] for step in summary["steps"]) if summary.get("steps") else sum(summary["newton_iterations"])
 
 
-def by_force(deck, forces, times):
-    """The same deck, moved by forces at times, linear between them."""
-    deck = json.loads(json.dumps(deck))
-    top = deck["Dirichlet"]["top"]
-    del top["Y"]
+def steps_in_time(forces, times):
+    """An expression of t that has these values at times."""
     text = repr(forces[-1])
     for time, force in reversed(list(zip(times[:-1], forces[:-1]))):
         text = f"t < {time + 0.01!r} ? {force!r} : ({text})"
-    top["Force Y"] = text
+    return text
+
+
+def by_force(deck, forces, times, point=None):
+    """The same deck, its top or its obstacle moved by forces at times."""
+    deck = json.loads(json.dumps(deck))
+    if point is None:
+        del deck["Dirichlet"]["top"]["Y"]
+        deck["Dirichlet"]["top"]["Force Y"] = steps_in_time(forces, times)
+        return deck
+    obstacle = deck["Contact"]["Obstacle"]
+    obstacle[point][1] = obstacle[point][1].partition(" + ")[0]
+    obstacle["Force Y"] = steps_in_time(forces, times)
     return deck
 
 
-def judge(rpc, seed, number, keep):
+def judge(rpc, moved, seed, number, keep):
     """(complaint or None, what happened, ratio of Newton steps or None)"""
-    deck, times = scene(seed, number)
+    if moved == "obstacle":
+        deck, times, path, point = with_tool(seed, number)
+        of_force, of_path, wanted, key = "contact_force", "obstacle_displacement_y", [eval_at(path, t) for t in times or [1.0]], "contact_force_y"
+    else:
+        (deck, times), point, key = scene(seed, number), None, "top_reaction_y"
     folder = tempfile.mkdtemp(prefix="rpc_forces_")
     try:
         code, given, rows, words = run(rpc, deck, folder, "moved")
         if code != 0:
             return None, f"not compared: a displacement ends with {code}: {words}", None
         given_rows = rows
-        forces = column(rows, "top_reaction_y") if times else [given["reaction_force"]["top"][1]]
-        wanted = column(rows, "top_displacement_y") if times else [float(deck["Dirichlet"]["top"]["Y"])]
+        if point:
+            forces = column(rows, key) if times else [given[of_force][1]]
+        else:
+            forces = column(rows, key) if times else [given["reaction_force"]["top"][1]]
+            wanted = column(rows, "top_displacement_y") if times else [float(deck["Dirichlet"]["top"]["Y"])]
         if min(map(abs, forces)) <= NOTHING * deck["Material"]["Young's Modulus"] * max(map(abs, wanted)):
             return None, "nothing touches: no force to compare", None
-        pressed = by_force(deck, forces, times or [1.0])
+        pressed = by_force(deck, forces, times or [1.0], point)
         code, found, rows, words = run(rpc, pressed, folder, "pressed")
         if code == NO_SOLUTION and "Yield Stress" in deck["Contact"]:
             if any(word in words for word in ("all that the foundation carries", "carries at most")):
                 return None, "all of the foundation yields, refused", None
         if code != 0:
             return f"exit {code}: {words or (found or {}).get('reason')}", "", None
-        back = column(rows, "top_displacement_y") if times else [found["force_displacement"]["top"][1]]
+        if point:
+            back = column(rows, of_path) if times else [found["obstacle_displacement"][1]]
+        else:
+            back = column(rows, "top_displacement_y") if times else [found["force_displacement"]["top"][1]]
         off = max(abs(a - b) for a, b in zip(wanted, back)) / max(abs(a) for a in wanted)
         if not determines(deck, given, given_rows):
             return None, "all that touches yields: not compared", None
         ratio = steps_of(found) / max(1, steps_of(given))
-        what = f"{found['element']} {found.get('kinematics', 'space')}, {found['dofs']} dofs: off by {off:.1e}, Newton {steps_of(given)} -> {steps_of(found)}"
+        of = f"{deck['Contact']['Obstacle']['Type']}, " if point else ""
+        what = f"{of}{found['element']} {found.get('kinematics', 'space')}, {found['dofs']} dofs: off by {off:.1e}, Newton {steps_of(given)} -> {steps_of(found)}"
         return (None if len(back) == len(wanted) and off <= SAME else f"displacements differ by {off:.2e}: {what}"), what, ratio
     finally:
         if keep:
@@ -167,6 +240,7 @@ def judge(rpc, seed, number, keep):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rpc", required=True)
+    parser.add_argument("--moved", default="side", choices=["side", "obstacle"])
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--scenes", type=int, default=50)
     parser.add_argument("--only", type=int)
@@ -176,7 +250,7 @@ def main():
     rpc, failed, ratios = os.path.abspath(options.rpc), 0, []
     numbers = range(options.scenes) if options.only is None else [options.only]
     with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
-        for number, (complaint, what, ratio) in zip(numbers, pool.map(lambda k: judge(rpc, options.seed, k, options.keep), numbers)):
+        for number, (complaint, what, ratio) in zip(numbers, pool.map(lambda k: judge(rpc, options.moved, options.seed, k, options.keep), numbers)):
             failed += complaint is not None
             ratios += [ratio] if ratio is not None else []
             print(f"{number}: {'FAILED ' + complaint if complaint else what}", flush=True)

@@ -123,11 +123,12 @@ void require_adaptable(const Task &task)
             << "\": errors are not estimated there yet. Leave \"Adapt\" out, or prescribe the displacement that "
                "the force has led to.");
   for (const auto &side : contact)
-    RPC_REQUIRE(!side.obstacle.is_moved() || !errors,
-                "deck: \"Adapt\" does not go with an obstacle that a force moves, \""
-                    << side.path
-                    << "->Obstacle\": errors are not estimated there yet. Leave \"Adapt\" out, or give the obstacle the "
-                       "place that the force has led to.");
+    RPC_REQUIRE(
+        !side.obstacle.is_moved() || !errors,
+        "deck: \"Adapt\" does not go with an obstacle that a force moves, \""
+            << side.path
+            << "->Obstacle\": errors are not estimated there yet. Leave \"Adapt\" out, or give the obstacle the "
+               "place that the force has led to.");
   if (!bounded) return;
   bound::require_covered(task);
   const auto *const box = std::get_if<mesh::BoxOptions>(&task.mesh);

@@ -166,8 +166,8 @@ std::array<std::optional<ScalarField>, 3> forces_of(const Teuchos::ParameterList
     force[c] = parse(text, parameter);
     require_finite_of_time(*force[c], parameter, text);
     RPC_REQUIRE(obstacle.path[c].is_constant(),
-                "deck: \"" << path << "->" << point << "\" must have a number as its coordinate along " << "XYZ"[c]
-                           << ", where the obstacle starts, for \"" << force_names[c] << "\" moves it; got "
+                "deck: \"" << path << "->" << point << "\" must have a number as its coordinate along "
+                           << "XYZ"[c] << ", where the obstacle starts, for \"" << force_names[c] << "\" moves it; got "
                            << obstacle.path[c].text << ". Leave one of them out.");
   }
   return force;

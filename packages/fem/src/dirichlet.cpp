@@ -98,9 +98,9 @@ std::unordered_map<LO, Prescribed> prescribed_dofs(const Discretization &d,
       for (std::size_t n = 0; n < nodes.size(); ++n) largest = std::max(largest, std::abs(values(n)));
       scale[k][c] = max_all(mesh.comm(), largest);
       RPC_REQUIRE(!condition.floats[c] || scale[k][c] == 0,
-                  "deck: \"" << path << "->" << component_name[c] << "\" must be 0 where a force moves the obstacle along "
-                             << component_name[c] << ", got " << scale[k][c]
-                             << " [m] in size. Hold the side, and let the force move the obstacle.");
+                  "deck: \"" << path << "->" << component_name[c]
+                             << "\" must be 0 where a force moves the obstacle along " << component_name[c] << ", got "
+                             << scale[k][c] << " [m] in size. Hold the side, and let the force move the obstacle.");
       for (std::size_t n = 0; n < nodes.size(); ++n) {
         Prescribed &dof = prescribed[rpc::dof(dim, nodes[n], c)];
         const int other = dof.condition;

@@ -105,8 +105,7 @@ Point approach(const fem::Discretization &d, const Model &now)
   for (std::size_t n = 0; n < x.extent(0); ++n) {
     Point place{};
     for (int c = 0; c < d.dim(); ++c) place[c] = x(n, c);
-    if (const auto distance = contact::distance_along(pressed.obstacle, place, towards))
-      way = std::min(way, *distance);
+    if (const auto distance = contact::distance_along(pressed.obstacle, place, towards)) way = std::min(way, *distance);
   }
   way = min_all(d.mesh->comm(), way);
   if (way == nowhere) {

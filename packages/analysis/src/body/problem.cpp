@@ -203,10 +203,9 @@ Step Problem::step(const double t, const MultiVector *const dents, const Memory 
   const Vector at_rest(d.owned_dofs);
   std::optional<contact::SlipStart> slip_start;
   if (has_friction(now.contact))
-    slip_start.emplace(
-        contact::SlipStart{before ? *before->displacement : at_rest,
-                           foundations_moved(model_, before ? before->time : time_at_rest(t), t,
-                                             before ? before->obstacle : Point{}, moved)});
+    slip_start.emplace(contact::SlipStart{before ? *before->displacement : at_rest,
+                                          foundations_moved(model_, before ? before->time : time_at_rest(t), t,
+                                                            before ? before->obstacle : Point{}, moved)});
   Step step{
       t,
       {},

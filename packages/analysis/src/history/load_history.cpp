@@ -372,7 +372,8 @@ Starts LoadHistory::starts_of(const Step &step)
   if (kept_.memory) {
     starts.states.push_back(state_of(step.contact, *kept_.memory));
     if (kept_.before && kept_.before->time < kept_.memory->time)
-      starts.states.push_back(extrapolated(step.contact, *kept_.before, *kept_.memory, step.time)); // of that obstacle, too
+      starts.states.push_back(
+          extrapolated(step.contact, *kept_.before, *kept_.memory, step.time)); // of that obstacle, too
     starts.states.push_back(at_rest(step.contact, problem_->discretization()));
   }
   if (kept_.memory || starts.states.empty())

@@ -151,7 +151,11 @@ Prediction Predictor::from_rest(const Problem &fine, const Step &step)
       contact::with_weightless(coarse.state, coarse.step.contact, problem.discretization(), problem.contact_sides());
   return {contact::interpolated(*coarser_->to_fine, coarse.step.contact, state, step.contact,
                                 fine.discretization().owned_dofs),
-          "", told_by(coarse, scene_of_choices(), level_, fine), work_of(coarse, start), 0, coarse.step.obstacle};
+          "",
+          told_by(coarse, scene_of_choices(), level_, fine),
+          work_of(coarse, start),
+          0,
+          coarse.step.obstacle};
 }
 
 /// A later step: what it changes.                                                                                (11.5)

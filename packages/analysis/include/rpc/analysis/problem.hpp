@@ -54,7 +54,8 @@ struct Step {
   contact::Support support;      ///< what holds the body
   double energies_before = 0;    ///< S of (5.5b), of the steps before [J], in 2D per m
   Point obstacle{};              ///< how far a force has moved its obstacle [m]: where the contact points are seen
-  RCP<const Vector> on_floating = {}; ///< (owned dofs) forces that stand for that on the obstacle [N]; null: there is none
+  RCP<const Vector> on_floating =
+      {}; ///< (owned dofs) forces that stand for that on the obstacle [N]; null: there is none
 };
 
 /// A body on its mesh: what stays from step to step, made once. Nothing of it changes while steps are solved: that is SolverState's.
