@@ -229,18 +229,16 @@ bool ActiveSetLoop::is_new_choice()
 {
   using Answer = Headway::Answer;
   if (headway_.visit(choice_->fingerprint, turns_ ? choice_rules.most_visits : 1) != Answer::cycle) return true;
-  if (!rubs_) { // what rough solves leave may decide; by good ones hardly a point goes to and fro
-    if (!rough_) return false;
-    rough_ = false;
-    headway_.forget_visits();
-    headway_.visit(choice_->fingerprint);
-    return true;
-  }
-  for (const double part : {double(choice_rules.first_part), 1.}) {
-    choice_ = iterate_.largest_changes(*choice_, part);
-    if (choice_->changes > 0 && headway_.visit(choice_->fingerprint) == Answer::progress) return true;
-  }
-  return false;
+  if (rubs_)
+    for (const double part : {double(choice_rules.first_part), 1.}) {
+      choice_ = iterate_.largest_changes(*choice_, part);
+      if (choice_->changes > 0 && headway_.visit(choice_->fingerprint) == Answer::progress) return true;
+    }
+  if (!rough_) return false; // what rough solves leave may decide; by good ones hardly a point goes to and fro
+  rough_ = false;
+  headway_.forget_visits();
+  headway_.visit(choice_->fingerprint);
+  return true;
 }
 
 /// Whether the choices may come to an end soon.                                                                   (5.8a)
