@@ -127,7 +127,8 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
     if (other.uzawa.converged) std::swap(other, s);
     add_work(other, s);
   };
-  if (s.uzawa.friction_unsettled && options.from_rest && s.start + 1 < starts.states.size()) {
+  const bool from_rest = s.start + 1 == starts.states.size();
+  if (s.uzawa.friction_unsettled && options.from_rest && !starts.states.empty() && !from_rest) {
     again(false, {{starts.states.back()}, {}}); // there may be no solution near by
     s.from_rest = s.uzawa.converged;
   }
