@@ -2,7 +2,10 @@
 #include "rpc/bound/bound.hpp"
 
 #include "boundary.hpp"
+#include "descent.hpp"
+#include "galerkin.hpp"
 #include "rpc/core/timed.hpp"
+#include "space_bound.hpp"
 #include "star_solves.hpp"
 
 #include <Teuchos_Time.hpp>
@@ -17,7 +20,7 @@ namespace
 
 constexpr const char *covered =
     "\"Adapt->Error Bound\" = guaranteed covers plane strain and plane stress of straight triangles or parallelograms, "
-    "on one rank, in one "
+    "and tetrahedra of order 1, on one rank, in one "
     "step, on foundations that are rigid until they yield at one yield stress a side, without friction";
 
 void require_of_deck(const bool condition, const std::string &what)
@@ -85,114 +88,6 @@ std::vector<OfFacet> depths(const ContactFacets &c, const int first, const conta
   return all;
 }
 
-RCP<Vector> vector_of(const HostView<double *> &u, const RCP<const Map> &map)
-{
-  const RCP<Vector> x = rcp(new Vector(map));
-  const auto from = to_device(u);
-  const auto to = device_write(*x);
-  Kokkos::parallel_for(
-      "rpc::bound::vector_of", device_range(static_cast<LO>(u.extent(0))),
-      KOKKOS_LAMBDA(const LO i) { to(i) = from(i); });
-  Kokkos::fence();
-  return x;
-}
-
-HostView<double *> host_copy(const Vector &u)
-{
-  const auto x = device_read(u);
-  DeviceView<double *> copy("rpc::bound::copy", x.extent(0));
-  Kokkos::parallel_for(
-      "rpc::bound::copy", device_range(static_cast<LO>(x.extent(0))), KOKKOS_LAMBDA(const LO i) { copy(i) = x(i); });
-  Kokkos::fence();
-  HostView<double *> host("rpc::bound::copy", x.extent(0));
-  Kokkos::deep_copy(host, copy);
-  return host;
-}
-
-/// The forces of the known moments minus those in the cells: what a displacement leaves of equilibrium (owned dofs) [N].
-RCP<Vector> out_of_balance(const CellInput &in, const fem::Discretization &d, const DeviceView<double ***> &moments,
-                           const DeviceView<double ***> &Q)
-{
-  const RCP<Vector> r = rcp(new Vector(d.owned_dofs));
-  const auto to = device_write(*r);
-  const int nodes = static_cast<int>(in.cells.extent(1));
-  const auto around = d.node_to_cells;
-  const Facets facets = in.facets;
-  Kokkos::parallel_for(
-      "rpc::bound::forces_of_cells", device_range(d.mesh->num_owned_nodes()), KOKKOS_LAMBDA(const LO node) {
-        for (int i = 0; i < 2; ++i) to(dof(2, node, i)) = 0;
-        for (std::size_t k = around.row(node); k < around.row(node + 1); ++k)
-          for (int a = 0; a < nodes; ++a)
-            if (in.cells(around.cell(k), a) == node)
-              for (int i = 0; i < 2; ++i) to(dof(2, node, i)) -= Q(around.cell(k), a, i);
-      });
-  Kokkos::parallel_for(
-      "rpc::bound::forces_of_facets", device_range(facets.size()), KOKKOS_LAMBDA(const LO f) {
-        if (!facets.on_boundary(f)) return;
-        for (int i = 0; i < 2; ++i) { // of two terms, whose order does not matter
-          for (int e = 0; e < 2; ++e) add_shared(to(dof(2, facets.node(f, e), i)), moments(f, e, i));
-          if (facets.middle(f) >= 0) to(dof(2, facets.middle(f), i)) += moments(f, 2, i);
-        }
-      });
-  Kokkos::fence();
-  return r;
-}
-
-/// The Galerkin solution of given tractions.                                                             doc/theory.md (13.5)
-struct Solved {
-  RCP<const Vector> u;
-  DeviceView<double ***> Q; ///< its nodal_forces()
-  int iterations = 0;
-  std::string failure;
-};
-Solved galerkin_solution(const analysis::Problem &problem, const analysis::StepSolution &s,
-                         const solver::LinearSolverOptions &options, const CellInput &in,
-                         const BoundaryTractions &tractions)
-{
-  constexpr double wanted = 1e-12, enough = 1e-9; // of the forces inside the body
-  const fem::Discretization &d = problem.discretization();
-  const auto moments = known_moments(in, tractions);
-  Solved found;
-  const RCP<Vector> u = rcp(new Vector(*s.u, Teuchos::Copy));
-  std::unique_ptr<analysis::SolverState> state;
-  double before = 0;
-  for (int pass = 0;; ++pass) {
-    found.Q = nodal_forces(in, d, *u);
-    const RCP<Vector> r = out_of_balance(in, d, moments, found.Q);
-    fem::clear_prescribed(s.step.elastic.dirichlet, *r);
-    const double left = r->norm2() / std::max(fem::internal_work(d, problem.model().materials, *u).force_norm, 1e-300);
-    if (left <= wanted || pass == 4 || (pass > 0 && left > before / 2)) {
-      if (!(left <= enough))
-        found.failure = "the elastic solve leaves " + shown(left) + " of the forces out of balance";
-      break;
-    }
-    before = left;
-    if (!state) state = std::make_unique<analysis::SolverState>(problem, options);
-    Vector x(d.owned_dofs);
-    const auto result = state->linear().solve(*r, x, 1e-3 * wanted / left + 1e-12);
-    found.iterations += result.iterations;
-    if (!result.converged && result.broken) {
-      found.failure = "the elastic solve failed: " + result.reason;
-      break;
-    }
-    u->update(1, x, 1);
-  }
-  found.u = u;
-  return found;
-}
-
-double work_of(const fem::Discretization &d, const DeviceView<double ***> &moments, const CellInput &in,
-               const Vector &u)
-{
-  const DeviceView<double ***> nothing("rpc::bound::nothing", in.num_cells(), in.cells.extent(1), 2);
-  const RCP<Vector> forces = out_of_balance(in, d, moments, nothing);
-  double work = forces->dot(u);
-  if (in.force[0] == 0 && in.force[1] == 0) return work;
-  const auto body = nodal_forces(in, d, Vector(d.owned_dofs));
-  const DeviceView<double ***> none("rpc::bound::nothing", in.facets.size(), 3, 2);
-  return work + out_of_balance(in, d, none, body)->dot(u);
-}
-
 } // namespace
 
 void require_covered(const analysis::Task &task)
@@ -223,7 +118,6 @@ void require_covered(const analysis::Problem &problem, const analysis::Step &ste
 {
   const fem::Discretization &d = problem.discretization();
   const analysis::Model model = problem.model().seen_at(step.time);
-  require_of_deck(d.dim() == 2, "the body is one in space");
   require_of_deck(d.mesh->comm().getSize() == 1, "there are " + std::to_string(d.mesh->comm().getSize()) +
                                                      " ranks, and stars at their borders would need cells of both");
   require_of_deck(!step.support.by_contact_only, "contact alone holds the body");
@@ -232,6 +126,11 @@ void require_covered(const analysis::Problem &problem, const analysis::Step &ste
     require_of_deck(projected(b) == 0, "the material of \"" + d.mesh->blocks[b] +
                                            "\" has a projected dilatation; where Poisson's ratio allows it, "
                                            "\"Dilatation\" = full is covered");
+  if (d.dim() == 3) {
+    const std::string reason = not_covered_in_space(problem, step);
+    require_of_deck(reason.empty(), reason);
+    return;
+  }
   const CellInput in = cell_input(problem, model);
   const double distortion = largest_distortion(in, d.mesh->element);
   require_of_deck(distortion <= 1e-9, "cells of " + d.mesh->element.name() +
@@ -294,7 +193,11 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   const double lift = norm_of_lifted_loads(in, lifted_loads(d.mesh->element), boundary.tractions.load);
   const DeviceView<double *> of_cell("rpc::bound::of_cell", in.num_cells());
   const CellForms forms = cell_forms(in, *u);
-  Descent descent(in, all, forms, t);
+  const StarSolves stars(in, all, forms);
+  const DeviceView<double **> scratch("rpc::bound::scratch", in.num_cells(), in.reference.tractions);
+  Descent descent(
+      [&](const Tractions &x, const bool linear, const Tractions &y) { add_up(in, forms, x, linear, scratch, y); },
+      [&](const Tractions &g, const Tractions &z) { stars.apply(g, z); }, t);
   std::vector<double> falls;
   for (int step = 0; step < steps; ++step) falls.push_back(descent.step());
   const StressDifference left = stress_difference(in, t, *u, of_cell);
@@ -322,7 +225,8 @@ EnergyBound energy_bound(const analysis::Problem &problem, const analysis::StepS
   double seconds = 0;
   {
     const Timed phase("bound", seconds);
-    bound = bound_of(problem, solution, options, steps);
+    bound = problem.discretization().dim() == 3 ? bound_in_space(problem, solution, options, steps)
+                                                : bound_of(problem, solution, options, steps);
   }
   bound.seconds = seconds;
   return bound;

@@ -267,7 +267,7 @@ Boundary boundary_of(const analysis::Problem &problem, const analysis::Step &ste
         if (condition.displacement[i]) prescribed(f, i) = 1;
   }
   Boundary b;
-  b.tractions.known = DeviceView<char *[2]>("rpc::bound::known", facets.size());
+  b.tractions.known = DeviceView<char **>("rpc::bound::known", facets.size(), 2);
   b.tractions.load = DeviceView<double ***>("rpc::bound::load", facets.size(), ReferenceStress::degree_of_loads + 1, 2);
   const auto known = Kokkos::create_mirror_view(b.tractions.known);
   for (LO f = 0; f < facets.size(); ++f)

@@ -10,6 +10,7 @@ namespace rpc::bound
 
 /// What kernels over cells read.
 struct CellInput {
+  static constexpr int dim = 2;
   DeviceView<double **> coords; ///< (nodes, 2) [m]
   DeviceView<LO **> cells;      ///< (cells, nodes)
   DeviceView<int *> block;      ///< (cells)

@@ -2,6 +2,7 @@
 #include "contact_pressure.hpp"
 
 #include "gauss.hpp"
+#include "least_in_box.hpp"
 #include "rpc/contact/law/foundation.hpp"
 
 #include <algorithm>
@@ -59,6 +60,8 @@ public:
     add_weighted(wanted);
     add_transposed(wanted, f_);
     start_.assign(n, 0.);
+    low_bound_.assign(n, 0.);
+    high_bound_.assign(n, c.limit);
     for (std::size_t e = 0; e < c.facet.size(); ++e) {
       OfFacet near = bernstein(c.order, c.pressure[e]);
       for (double &b : near) b = std::clamp(b, 0., c.limit);
@@ -95,6 +98,8 @@ public:
   const std::vector<double> &right_side() const { return f_; }
   const std::vector<double> &scale() const { return scale_; } ///< that makes about 1 of the diagonal
   const std::vector<double> &start() const { return start_; }
+  const std::vector<double> &low() const { return low_bound_; }
+  const std::vector<double> &high() const { return high_bound_; }
 
 private:
   double near_weight(const std::size_t e) const
@@ -159,101 +164,8 @@ private:
   Table forces_, mass_; // of shape and Bernstein functions, of Bernstein functions
   double low_ = 0, span_ = 0;
   std::vector<int> intervals_;
-  std::vector<double> f_, scale_, start_;
+  std::vector<double> f_, scale_, start_, low_bound_, high_bound_;
 };
-
-double inner_of(const std::vector<double> &x, const std::vector<double> &y)
-{
-  double sum = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) sum += x[i] * y[i];
-  return sum;
-}
-
-/// The least of the function between 0 and upper bounds: conjugate gradients on the face, with steps that leave it (Dostal, SIAM J. Optim. 7,
-/// 1997). Any point between the bounds gives a bound of the error; this one a good one.
-std::vector<double> least_in_box(const Fit &fit, const double limit)
-{
-  const std::vector<double> &scale = fit.scale();
-  const std::size_t n = scale.size();
-  std::vector<double> x(n), g(n), y(n), Hy(n), free(n), chopped(n), scaled(n), upper(n);
-  const auto apply = [&](const std::vector<double> &from, std::vector<double> &to) {
-    for (std::size_t i = 0; i < n; ++i) scaled[i] = scale[i] * from[i];
-    fit.apply(scaled, to);
-    for (std::size_t i = 0; i < n; ++i) to[i] *= scale[i];
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    x[i] = fit.start()[i] / scale[i];
-    upper[i] = limit / scale[i];
-    y[i] = 1 + 0.5 * std::sin(static_cast<double>(i));
-  }
-  double norm = 1;
-  for (int k = 0; k < 20; ++k) { // the largest eigenvalue, about
-    apply(y, Hy);
-    norm = std::sqrt(inner_of(Hy, Hy) / inner_of(y, y));
-    const double size = std::sqrt(inner_of(Hy, Hy));
-    for (std::size_t i = 0; i < n; ++i) y[i] = Hy[i] / size;
-  }
-  const double fixed_step = 1 / (1.1 * norm);
-  apply(x, g);
-  for (std::size_t i = 0; i < n; ++i) g[i] -= scale[i] * fit.right_side()[i];
-  double size_of_f = 0;
-  for (std::size_t i = 0; i < n; ++i) size_of_f += std::pow(scale[i] * fit.right_side()[i], 2);
-  bool restart = true;
-  for (int step = 0; step < 3000; ++step) {
-    for (std::size_t i = 0; i < n; ++i) {
-      const bool low = x[i] <= 0, high = x[i] >= upper[i];
-      free[i] = low || high ? 0 : g[i];
-      chopped[i] = low ? std::min(g[i], 0.) : (high ? std::max(g[i], 0.) : 0.);
-    }
-    const double ff = inner_of(free, free), cc = inner_of(chopped, chopped);
-    if (ff + cc <= 1e-20 * size_of_f) break;
-    if (cc > ff) { // leave bounds
-      apply(chopped, Hy);
-      double most = inner_of(chopped, g) / inner_of(chopped, Hy);
-      for (std::size_t i = 0; i < n; ++i) {
-        if (chopped[i] > 0) most = std::min(most, x[i] / chopped[i]);
-        if (chopped[i] < 0) most = std::min(most, (x[i] - upper[i]) / chopped[i]);
-      }
-      for (std::size_t i = 0; i < n; ++i) {
-        x[i] = std::clamp(x[i] - most * chopped[i], 0., upper[i]);
-        g[i] -= most * Hy[i];
-      }
-      restart = true;
-      continue;
-    }
-    if (restart) y = free;
-    restart = false;
-    apply(y, Hy);
-    const double curvature = inner_of(y, Hy), length = inner_of(g, y) / curvature;
-    double most = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < n; ++i) {
-      if (y[i] > 0) most = std::min(most, x[i] / y[i]);
-      if (y[i] < 0) most = std::min(most, (x[i] - upper[i]) / y[i]);
-    }
-    if (length <= most) {
-      for (std::size_t i = 0; i < n; ++i) {
-        x[i] = std::clamp(x[i] - length * y[i], 0., upper[i]);
-        g[i] -= length * Hy[i];
-      }
-      double along = 0;
-      for (std::size_t i = 0; i < n; ++i) along += (x[i] > 0 && x[i] < upper[i] ? g[i] : 0) * Hy[i];
-      const double beta = along / curvature;
-      for (std::size_t i = 0; i < n; ++i) y[i] = (x[i] > 0 && x[i] < upper[i] ? g[i] : 0) - beta * y[i];
-      continue;
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      x[i] = std::clamp(x[i] - most * y[i], 0., upper[i]);
-      g[i] -= most * Hy[i];
-    }
-    for (std::size_t i = 0; i < n; ++i)
-      if (x[i] > 0 && x[i] < upper[i]) x[i] = std::clamp(x[i] - fixed_step * g[i], 0., upper[i]);
-    apply(x, g);
-    for (std::size_t i = 0; i < n; ++i) g[i] -= scale[i] * fit.right_side()[i];
-    restart = true;
-  }
-  for (std::size_t i = 0; i < n; ++i) x[i] = std::clamp(x[i] * scale[i], 0., limit);
-  return x;
-}
 
 /// Where a polynomial of degree 2 changes its sign within [0, 1], with both ends.
 std::vector<double> pieces_of(const double c0, const double c1, const double c2)
@@ -289,7 +201,7 @@ OfFacet legendre_of(const int order, const OfFacet &b)
 
 std::vector<OfFacet> fitted_pressure(const ContactFacets &c, const std::vector<OfFacet> &v)
 {
-  const std::vector<double> x = least_in_box(Fit(c, v), c.limit);
+  const std::vector<double> x = least_in_box(Fit(c, v), 1e-20);
   std::vector<OfFacet> p(c.facet.size());
   for (std::size_t e = 0; e < p.size(); ++e)
     for (int i = 0; i <= c.order; ++i) p[e][i] = x[e * (c.order + 1) + i];

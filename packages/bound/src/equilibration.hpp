@@ -8,8 +8,9 @@ namespace rpc::bound
 
 /// What is known of the tractions on the boundary.
 struct BoundaryTractions {
-  DeviceView<char *[2]> known; ///< (facets, component) 1 where the traction is prescribed
-  DeviceView<double ***> load; ///< (facets, degree_of_loads + 1, 2) coefficients where it is [N]
+  DeviceView<char **> known; ///< (facets, component) 1 where the traction is prescribed
+  DeviceView<double ***>
+      load; ///< (facets, polynomials up to degree_of_loads_in(dim), component) coefficients where it is [N]
 };
 
 /// The moments int t N_a over each facet of the known tractions with the element's functions: (facets, nodes of a facet, 2) [N].

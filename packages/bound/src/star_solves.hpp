@@ -24,21 +24,4 @@ private:
   DeviceView<double *> answer_;     // (3 nodes + modes of spokes)
 };
 
-/// One step of the method of conjugate gradients after the other, which lowers the energy of the tractions. Tractions stay in balance.
-class Descent
-{
-public:
-  Descent(const CellInput &in, const BoundaryTractions &boundary, const CellForms &forms, const Tractions &t);
-  /// @return by how much the energy falls [J]
-  double step();
-
-private:
-  CellInput in_;
-  CellForms forms_;
-  StarSolves stars_;
-  Tractions t_, g_, z_, d_, Ad_;
-  DeviceView<double **> scratch_;
-  double rho_ = 0;
-};
-
 } // namespace rpc::bound

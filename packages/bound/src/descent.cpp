@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "descent.hpp"
+
+#include <utility>
+
+namespace rpc::bound
+{
+namespace
+{
+
+double inner_product(const Tractions &x, const Tractions &y)
+{
+  double sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::bound::inner_product", device_range(static_cast<LO>(x.extent(0))),
+      KOKKOS_LAMBDA(const LO i, double &part) { part += x(i) * y(i); }, sum);
+  return sum;
+}
+
+/// x <- a x + b y.
+void combine(const double a, const Tractions &x, const double b, const Tractions &y)
+{
+  Kokkos::parallel_for(
+      "rpc::bound::combine", device_range(static_cast<LO>(x.extent(0))),
+      KOKKOS_LAMBDA(const LO i) { x(i) = a * x(i) + b * y(i); });
+  Kokkos::fence();
+}
+
+} // namespace
+
+Descent::Descent(Derivative derivative, Answer answer, const Tractions &t)
+    : derivative_(std::move(derivative)), answer_(std::move(answer)), t_(t), g_("rpc::bound::g", t.extent(0)),
+      z_("rpc::bound::z", t.extent(0)), d_("rpc::bound::d", t.extent(0)), Ad_("rpc::bound::Ad", t.extent(0))
+{
+  derivative_(t_, true, g_);
+}
+
+double Descent::step()
+{
+  answer_(g_, z_);
+  const double rho = inner_product(g_, z_);
+  if (!(rho > 0)) return 0;
+  combine(rho_ > 0 ? rho / rho_ : 0, d_, -1, z_);
+  rho_ = rho;
+  derivative_(d_, false, Ad_);
+  const double curvature = inner_product(d_, Ad_);
+  if (!(curvature > 0)) return 0;
+  const double length = rho / curvature;
+  combine(1, t_, length, d_);
+  combine(1, g_, length, Ad_);
+  return rho * length / 2;
+}
+
+} // namespace rpc::bound

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace rpc::bound
+{
+
+inline double inner_of(const std::vector<double> &x, const std::vector<double> &y)
+{
+  double sum = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) sum += x[i] * y[i];
+  return sum;
+}
+
+/// The least of a quadratic function x . H x/2 - f . x between bounds: conjugate gradients on the face, with steps that leave it (Dostal, SIAM
+/// J. Optim. 7, 1997).
+/// @param fit  has apply(x, y), y <- H x; right_side(), f; start(); low() and high(); scale(), which makes about 1 of the diagonal
+/// @param enough  square of what may be left of the gradient, over that of f, both scaled
+template <class Fit>
+std::vector<double> least_in_box(const Fit &fit, const double enough)
+{
+  const std::vector<double> &scale = fit.scale();
+  const std::size_t n = scale.size();
+  std::vector<double> x(n), g(n), y(n), Hy(n), free(n), chopped(n), scaled(n), lower(n), upper(n);
+  const auto apply = [&](const std::vector<double> &from, std::vector<double> &to) {
+    for (std::size_t i = 0; i < n; ++i) scaled[i] = scale[i] * from[i];
+    fit.apply(scaled, to);
+    for (std::size_t i = 0; i < n; ++i) to[i] *= scale[i];
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    x[i] = fit.start()[i] / scale[i];
+    lower[i] = fit.low()[i] / scale[i];
+    upper[i] = fit.high()[i] / scale[i];
+    y[i] = 1 + 0.5 * std::sin(static_cast<double>(i));
+  }
+  double norm = 1;
+  for (int k = 0; k < 20; ++k) { // the largest eigenvalue, about
+    apply(y, Hy);
+    norm = std::sqrt(inner_of(Hy, Hy) / inner_of(y, y));
+    const double size = std::sqrt(inner_of(Hy, Hy));
+    for (std::size_t i = 0; i < n; ++i) y[i] = Hy[i] / size;
+  }
+  const double fixed_step = 1 / (1.1 * norm);
+  apply(x, g);
+  for (std::size_t i = 0; i < n; ++i) g[i] -= scale[i] * fit.right_side()[i];
+  double size_of_f = 0;
+  for (std::size_t i = 0; i < n; ++i) size_of_f += std::pow(scale[i] * fit.right_side()[i], 2);
+  bool restart = true;
+  for (int step = 0; step < 3000; ++step) {
+    for (std::size_t i = 0; i < n; ++i) {
+      const bool low = x[i] <= lower[i], high = x[i] >= upper[i];
+      free[i] = low || high ? 0 : g[i];
+      chopped[i] = low && high ? 0 : (low ? std::min(g[i], 0.) : (high ? std::max(g[i], 0.) : 0.));
+    }
+    const double ff = inner_of(free, free), cc = inner_of(chopped, chopped);
+    if (ff + cc <= enough * size_of_f) break;
+    if (cc > ff) { // leave bounds
+      apply(chopped, Hy);
+      double most = inner_of(chopped, g) / inner_of(chopped, Hy);
+      for (std::size_t i = 0; i < n; ++i) {
+        if (chopped[i] > 0) most = std::min(most, (x[i] - lower[i]) / chopped[i]);
+        if (chopped[i] < 0) most = std::min(most, (x[i] - upper[i]) / chopped[i]);
+      }
+      for (std::size_t i = 0; i < n; ++i) {
+        x[i] = std::clamp(x[i] - most * chopped[i], lower[i], upper[i]);
+        g[i] -= most * Hy[i];
+      }
+      restart = true;
+      continue;
+    }
+    if (restart) y = free;
+    restart = false;
+    apply(y, Hy);
+    const double curvature = inner_of(y, Hy), length = inner_of(g, y) / curvature;
+    double most = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < n; ++i) {
+      if (y[i] > 0) most = std::min(most, (x[i] - lower[i]) / y[i]);
+      if (y[i] < 0) most = std::min(most, (x[i] - upper[i]) / y[i]);
+    }
+    if (length <= most) {
+      for (std::size_t i = 0; i < n; ++i) {
+        x[i] = std::clamp(x[i] - length * y[i], lower[i], upper[i]);
+        g[i] -= length * Hy[i];
+      }
+      double along = 0;
+      for (std::size_t i = 0; i < n; ++i) along += (x[i] > lower[i] && x[i] < upper[i] ? g[i] : 0) * Hy[i];
+      const double beta = along / curvature;
+      for (std::size_t i = 0; i < n; ++i) y[i] = (x[i] > lower[i] && x[i] < upper[i] ? g[i] : 0) - beta * y[i];
+      continue;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] = std::clamp(x[i] - most * y[i], lower[i], upper[i]);
+      g[i] -= most * Hy[i];
+    }
+    for (std::size_t i = 0; i < n; ++i)
+      if (x[i] > lower[i] && x[i] < upper[i]) x[i] = std::clamp(x[i] - fixed_step * g[i], lower[i], upper[i]);
+    apply(x, g);
+    for (std::size_t i = 0; i < n; ++i) g[i] -= scale[i] * fit.right_side()[i];
+    restart = true;
+  }
+  for (std::size_t i = 0; i < n; ++i) x[i] = std::clamp(x[i] * scale[i], fit.low()[i], fit.high()[i]);
+  return x;
+}
+
+} // namespace rpc::bound

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "rpc/bound/bound.hpp"
+
+/// What bound.hpp says, of bodies in space.
+namespace rpc::bound
+{
+
+/// Why the bound of a body in space is not known; empty if it is. What does not depend on the dimension is not looked at.
+/// @throws rpc::Error (bad_input) where boundary conditions are not covered
+std::string not_covered_in_space(const analysis::Problem &problem, const analysis::Step &step);
+
+EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::StepSolution &s,
+                           const solver::LinearSolverOptions &options, int steps);
+
+} // namespace rpc::bound

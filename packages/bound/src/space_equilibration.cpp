@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "space_cells.hpp"
+
+namespace rpc::bound
+{
+namespace
+{
+
+/// The moments at the facets of a node's star from the balance of its cells. They are as near as can be to the mean of both sides: a change
+/// is what two cells, or one and the outside, exchange through their facet, and what cells send out solves a graph Laplacian.
+struct BalanceStarsInSpace {
+  SpaceInput in;
+  BoundaryTractions boundary;
+  DeviceView<double ***> Q, mean, known;
+  fem::NodeToCells around;
+  DeviceView<std::size_t *> first; // (nodes + 1) where the matrix of a star begins
+  DeviceView<double *> matrix;
+  DeviceView<double **> sent; // (entries of node_to_cells, 3) out
+
+  KOKKOS_FUNCTION int node_of_cell(const LO c, const LO node) const
+  {
+    for (int a = 0; a < static_cast<int>(in.cells.extent(1)); ++a)
+      if (in.cells(c, a) == node) return a;
+    return -1;
+  }
+  KOKKOS_FUNCTION int node_of_facet(const LO f, const LO node) const
+  {
+    for (int a = 0; a < static_cast<int>(in.facets.node.extent(1)); ++a)
+      if (in.facets.node(f, a) == node) return a;
+    return -1;
+  }
+  KOKKOS_FUNCTION bool is_known(const LO f, const int i) const
+  {
+    return in.facets.on_boundary(f) && boundary.known(f, i);
+  }
+  /// What is in one relation to the area. A moment's square counts in the least squares by one over the area.
+  KOKKOS_FUNCTION double area(const LO f) const
+  {
+    const FacetFrame frame(in, f);
+    return math::sqrt(frame.normal[0] * frame.normal[0] + frame.normal[1] * frame.normal[1] +
+                      frame.normal[2] * frame.normal[2]);
+  }
+  KOKKOS_FUNCTION bool same_as_before(const LO node, const int i) const
+  {
+    if (i == 0) return false;
+    for (std::size_t k = around.row(node); k < around.row(node + 1); ++k)
+      for (int s = 0; s < 4; ++s) {
+        const LO f = in.facets.of_cell(around.cell(k), s);
+        if (in.facets.on_boundary(f) && boundary.known(f, i) != boundary.known(f, i - 1)) return false;
+      }
+    return true;
+  }
+
+  /// Cholesky factor of the matrix of a component; a pivot that vanishes is that of even changes, which nothing determines.
+  /// @return whether there is one
+  KOKKOS_FUNCTION bool factor(const LO node, const int i, double *L) const
+  {
+    const std::size_t begin = around.row(node);
+    const int n = static_cast<int>(around.row(node + 1) - begin);
+    for (int k = 0; k < n * n; ++k) L[k] = 0;
+    for (int k = 0; k < n; ++k) {
+      const LO c = around.cell(begin + k);
+      for (int s = 0; s < 4; ++s) {
+        const LO f = in.facets.of_cell(c, s);
+        if (node_of_facet(f, node) < 0 || is_known(f, i)) continue;
+        const double w = area(f);
+        L[k * n + k] += w;
+        if (in.facets.on_boundary(f)) continue;
+        const LO other = in.facets.cell(f, 0) == c ? in.facets.cell(f, 1) : in.facets.cell(f, 0);
+        for (int l = 0; l < k; ++l)
+          if (around.cell(begin + l) == other) L[k * n + l] -= w;
+      }
+    }
+    bool singular = false;
+    for (int j = 0; j < n; ++j) {
+      const double own = L[j * n + j];
+      for (int k = 0; k < j; ++k) {
+        const double by = L[j * n + k];
+        for (int r = j; by != 0 && r < n; ++r) L[r * n + j] -= L[r * n + k] * by;
+      }
+      if (!(L[j * n + j] > 1e-10 * own)) {
+        singular = true;
+        for (int r = j; r < n; ++r) L[r * n + j] = 0;
+        continue;
+      }
+      const double pivot = math::sqrt(L[j * n + j]);
+      for (int r = j; r < n; ++r) L[r * n + j] /= pivot;
+    }
+    return singular;
+  }
+
+  KOKKOS_FUNCTION void operator()(const LO node) const
+  {
+    const std::size_t begin = around.row(node);
+    const int n = static_cast<int>(around.row(node + 1) - begin);
+    double *const L = matrix.data() + first(node);
+    bool singular = false;
+    for (int i = 0; i < 3; ++i) {
+      if (!same_as_before(node, i)) singular = factor(node, i, L);
+      double rest = 0;
+      for (int k = 0; k < n; ++k) { // what lacks
+        const LO c = around.cell(begin + k);
+        double r = Q(c, node_of_cell(c, node), i);
+        for (int s = 0; s < 4; ++s) {
+          const LO f = in.facets.of_cell(c, s);
+          const int a = node_of_facet(f, node);
+          if (a >= 0) r -= in.facets.sign(c, s) * (is_known(f, i) ? known(f, a, i) : mean(f, a, i));
+        }
+        sent(begin + k, i) = r;
+        rest += r;
+      }
+      if (singular) // what a solve has left of the balance of the star is shared by its cells
+        for (int k = 0; k < n; ++k) sent(begin + k, i) -= rest / n;
+      for (int j = 0; j < n; ++j) {
+        double x = sent(begin + j, i);
+        for (int k = 0; k < j; ++k) x -= L[j * n + k] * sent(begin + k, i);
+        sent(begin + j, i) = L[j * n + j] > 0 ? x / L[j * n + j] : 0;
+      }
+      for (int j = n - 1; j >= 0; --j) {
+        double x = sent(begin + j, i);
+        for (int k = j + 1; k < n; ++k) x -= L[k * n + j] * sent(begin + k, i);
+        sent(begin + j, i) = L[j * n + j] > 0 ? x / L[j * n + j] : 0;
+      }
+    }
+  }
+
+  /// The moment of a facet with the function of its node a.
+  KOKKOS_FUNCTION double moment(const LO f, const int a, const int i) const
+  {
+    if (is_known(f, i)) return known(f, a, i);
+    const LO node = in.facets.node(f, a);
+    double change = 0;
+    for (std::size_t k = around.row(node); k < around.row(node + 1); ++k)
+      for (int side = 0; side < 2; ++side)
+        if (around.cell(k) == in.facets.cell(f, side)) change += (side == 0 ? 1 : -1) * sent(k, i);
+    return mean(f, a, i) + area(f) * change;
+  }
+};
+
+} // namespace
+
+DeviceView<double ***> known_moments(const SpaceInput &in, const BoundaryTractions &boundary)
+{
+  const int functions = static_cast<int>(in.facets.node.extent(1));
+  DeviceView<double ***> m("rpc::bound::known_moments", in.facets.size(), functions, 3);
+  const auto load = boundary.load;
+  const auto moment = in.tables.moment;
+  const SpaceFacets facets = in.facets;
+  Kokkos::parallel_for(
+      "rpc::bound::known_moments", device_range(facets.size()), KOKKOS_LAMBDA(const LO f) {
+        if (!facets.on_boundary(f)) return;
+        for (int a = 0; a < functions; ++a)
+          for (int j = 0; j < functions; ++j) // the polynomials beyond have none
+            for (int i = 0; i < 3; ++i) m(f, a, i) += moment(j, a) * load(f, j, i);
+      });
+  Kokkos::fence();
+  return m;
+}
+
+Tractions equilibrated(const SpaceInput &in, const BoundaryTractions &boundary, const DeviceView<double ***> &Q,
+                       const DeviceView<double ***> &mean, const fem::NodeToCells &around)
+{
+  const LO nodes = static_cast<LO>(around.row.extent(0)) - 1;
+  const int functions = static_cast<int>(in.facets.node.extent(1));
+  DeviceView<std::size_t *> first("rpc::bound::first", nodes + 1);
+  std::size_t total = 0;
+  Kokkos::parallel_scan(
+      "rpc::bound::sizes_of_stars", device_range(nodes),
+      KOKKOS_LAMBDA(const LO node, std::size_t &before, const bool last) {
+        if (last) first(node) = before;
+        const std::size_t n = around.row(node + 1) - around.row(node);
+        before += n * n;
+      },
+      total);
+  const BalanceStarsInSpace stars{
+      in,
+      boundary,
+      Q,
+      mean,
+      known_moments(in, boundary),
+      around,
+      first,
+      DeviceView<double *>(Kokkos::view_alloc("rpc::bound::matrix", Kokkos::WithoutInitializing), total),
+      DeviceView<double **>("rpc::bound::sent", around.cell.extent(0), 3)};
+  Kokkos::parallel_for("rpc::bound::balance_stars", device_range(nodes), stars);
+  const Tractions t("rpc::bound::tractions", static_cast<std::size_t>(in.facets.size()) * 3 * functions);
+  const auto from = in.tables.from_moments;
+  const auto load = boundary.load;
+  Kokkos::parallel_for(
+      "rpc::bound::tractions_from_moments", device_range(in.facets.size()), KOKKOS_LAMBDA(const LO f) {
+        for (int i = 0; i < 3; ++i) {
+          const std::size_t at = static_cast<std::size_t>(f) * 3 * functions + i;
+          if (stars.is_known(f, i)) {
+            for (int j = 0; j < functions; ++j) t(at + 3 * j) = load(f, j, i);
+            continue;
+          }
+          for (int a = 0; a < functions; ++a) {
+            const double m = stars.moment(f, a, i);
+            for (int j = 0; j < functions; ++j) t(at + 3 * j) += from(j, a) * m;
+          }
+        }
+      });
+  Kokkos::fence();
+  return t;
+}
+
+} // namespace rpc::bound
