@@ -52,9 +52,7 @@ Solution with_estimate(const Task &task, const Listener &listener, const Run &ru
     };
   all.solved = [&](const analysis::Problem &problem, analysis::Solution &found) {
     if (guaranteed && found.has_results())
-      s.bound = bound::energy_bound(problem, found, task.linear_solver,
-                                    problem.discretization().dim() == 3 ? bound::bound_rules.steps_in_space
-                                                                        : bound::bound_rules.steps);
+      s.bound = bound::energy_bound(problem, found, task.linear_solver, bound::bound_rules.steps);
     const contact::ContactNodes &points = found.step.contact;
     const Comm &comm = found.discretization.mesh->comm();
     const auto &pressure = found.contact.pressure;

@@ -225,7 +225,7 @@ EnergyBound energy_bound(const analysis::Problem &problem, const analysis::StepS
   double seconds = 0;
   {
     const Timed phase("bound", seconds);
-    bound = problem.discretization().dim() == 3 ? bound_in_space(problem, solution, options, steps)
+    bound = problem.discretization().dim() == 3 ? bound_in_space(problem, solution, options, 2 * steps)
                                                 : bound_of(problem, solution, options, steps);
   }
   bound.seconds = seconds;

@@ -13,8 +13,8 @@ namespace
 /// The modes of a ring, as kernels see them.
 template <int K>
 struct RingModes {
-  using Sizes = SpaceSizes<K>;
-  static constexpr int own = Sizes::per_facet - 6, all = 6 + own; ///< of each facet, and with those that are handed on
+  static constexpr int own = SpaceSizes<K>::per_facet - 6,
+                       all = 6 + own; ///< of each facet, and with those that are handed on
   SpaceInput in;
   DeviceView<unsigned char *> free;
 
@@ -44,83 +44,107 @@ struct RingModes {
     if (components == within) return within | along << 3;
     return 0;
   }
-  KOKKOS_FUNCTION void origin(const LO ring, double (&o)[3], double &unit) const
+};
+
+/// The modes of a ring at one of its facets. The traction T_0 + T_1 P_1 + T_2 P_2 + ... has the force T_0 and the moment d_1 x T_1 + d_2 x T_2
+/// about the facet's centre, with the d of FacetFrame. What is handed on has the T_1, T_2 with the least of them that gives its moment.
+template <int K>
+struct ModesAtFacet {
+  using Sizes = SpaceSizes<K>;
+  static constexpr int own = RingModes<K>::own;
+  FacetFrame frame;
+  double arm[3], unit = 0, squared = 0,
+                 toward; ///< from the middle of the edge to the centre; the unit of moments; of the normal
+  int may, components;
+  bool in_plane; ///< whether the linear modes without force and moment, which lie in the plane of the facet, are free
+
+  KOKKOS_FUNCTION ModesAtFacet(const RingModes<K> &modes, const LO ring, const int k)
+      : ModesAtFacet(modes, ring, modes.in.facets.first_facet(ring) + k)
   {
-    unit = 0;
+  }
+  /// (tractions of a facet) t = sum of the modes, in the signs of the facet; others than the free ones are 0.
+  KOKKOS_FUNCTION void expand(const double *common, const double *of_facet, double *t) const
+  {
+    const auto &d = frame.along;
+    const auto &n = frame.normal;
+    double force[3], moment[3], along = 0, by[2] = {0, 0};
+    for (int i = 0; i < 3; ++i) force[i] = may >> i & 1 ? common[i] : 0;
     for (int i = 0; i < 3; ++i) {
-      const double a = in.coords(in.facets.edge(ring, 0), i), b = in.coords(in.facets.edge(ring, 1), i);
-      o[i] = (a + b) / 2;
+      const int a = (i + 1) % 3, b = (i + 2) % 3;
+      moment[i] = (may >> (3 + i) & 1 ? unit * common[3 + i] : 0) - (arm[a] * force[b] - arm[b] * force[a]);
+    }
+    for (int i = 0; i < 3; ++i) {
+      along += moment[i] * n[i] / (2 * squared);
+      for (int j = 0; j < 2; ++j) by[j] += moment[i] * d[j][i] / squared;
+    }
+    for (int i = 0; i < 3; ++i) {
+      t[i] = force[i];
+      t[3 + i] = along * d[1][i] - by[1] * n[i];
+      t[6 + i] = -along * d[0][i] + by[0] * n[i];
+      if (in_plane) {
+        t[3 + i] += (of_facet[0] * d[0][i] + of_facet[2] * d[1][i]) / unit;
+        t[6 + i] += (of_facet[1] * d[1][i] + of_facet[2] * d[0][i]) / unit;
+      }
+    }
+    for (int p = 9; p < Sizes::per_facet; ++p) t[p] = of_facet[p - 6];
+    for (int p = 0; p < Sizes::per_facet; ++p) t[p] = components >> p % 3 & 1 ? toward * t[p] : 0;
+  }
+  /// The transpose: common += ..., of_facet = ...
+  KOKKOS_FUNCTION void reduce(const double *given, double *common, double *of_facet) const
+  {
+    const auto &d = frame.along;
+    const auto &n = frame.normal;
+    double g[Sizes::per_facet], along = 0, by[2] = {0, 0}, w[3];
+    for (int p = 0; p < Sizes::per_facet; ++p) g[p] = components >> p % 3 & 1 ? toward * given[p] : 0;
+    for (int m = 0; m < 3; ++m) of_facet[m] = 0;
+    for (int i = 0; i < 3; ++i) {
+      along += (g[3 + i] * d[1][i] - g[6 + i] * d[0][i]) / (2 * squared);
+      by[0] += g[6 + i] * n[i] / squared;
+      by[1] += g[3 + i] * n[i] / squared;
+      if (!in_plane) continue;
+      of_facet[0] += g[3 + i] * d[0][i] / unit;
+      of_facet[1] += g[6 + i] * d[1][i] / unit;
+      of_facet[2] += (g[3 + i] * d[1][i] + g[6 + i] * d[0][i]) / unit;
+    }
+    for (int i = 0; i < 3; ++i) w[i] = along * n[i] + by[0] * d[0][i] - by[1] * d[1][i];
+    for (int i = 0; i < 3; ++i) {
+      const int a = (i + 1) % 3, b = (i + 2) % 3;
+      if (may >> i & 1) common[i] += g[i] - (w[a] * arm[b] - w[b] * arm[a]);
+      if (may >> (3 + i) & 1) common[3 + i] += unit * w[i];
+    }
+    for (int p = 9; p < Sizes::per_facet; ++p) of_facet[p - 6] = g[p];
+  }
+
+private:
+  KOKKOS_FUNCTION ModesAtFacet(const RingModes<K> &modes, const LO ring, const std::size_t at)
+      : frame(modes.in, modes.in.facets.ring_facet(at)), toward(modes.in.facets.toward(at)), may(modes.common(ring)),
+        components(modes.free(modes.in.facets.ring_facet(at)) & 7)
+  {
+    const int axis = modes.free(modes.in.facets.ring_facet(at)) >> 3;
+    in_plane = components == 7 || (axis < 3 && (components | 1 << axis) == 7);
+    for (int i = 0; i < 3; ++i) {
+      const double a = modes.in.coords(modes.in.facets.edge(ring, 0), i),
+                   b = modes.in.coords(modes.in.facets.edge(ring, 1), i);
+      arm[i] = frame.centre[i] - (a + b) / 2;
       unit += (a - b) * (a - b);
+      squared += frame.normal[i] * frame.normal[i];
     }
     unit = math::sqrt(unit);
   }
-
-  /// (tractions of a facet, modes), in the signs of the facet; others than the free ones are 0.
-  KOKKOS_FUNCTION void of_facet(const LO ring, const int k, double (&M)[Sizes::per_facet][all]) const
-  {
-    for (auto &row : M)
-      for (double &x : row) x = 0;
-    const std::size_t at = in.facets.first_facet(ring) + k;
-    const LO f = in.facets.ring_facet(at);
-    const double toward = in.facets.toward(at);
-    const int components = free(f) & 7;
-    if (components == 0) return;
-    const FacetFrame frame(in, f);
-    const auto &d = frame.along;
-    double o[3], unit, squared = 0;
-    origin(ring, o, unit);
-    for (const double x : frame.normal) squared += x * x;
-    const int may = common(ring);
-    for (int mode = 0; mode < 6; ++mode) {
-      if (!(may >> mode & 1)) continue;
-      double force[3] = {}, moment[3] = {}; // about the centre of the facet
-      if (mode < 3) {
-        force[mode] = 1;
-        const int a = (mode + 1) % 3, b = (mode + 2) % 3;
-        moment[a] = -(frame.centre[b] - o[b]);
-        moment[b] = frame.centre[a] - o[a];
-      } else {
-        moment[mode - 3] = unit;
-      }
-      double along = 0, by[2] = {0, 0};
-      for (int i = 0; i < 3; ++i) {
-        along += moment[i] * frame.normal[i];
-        for (int j = 0; j < 2; ++j) by[j] += moment[i] * d[j][i];
-      }
-      for (int i = 0; i < 3; ++i) {
-        M[i][mode] = toward * force[i];
-        M[3 + i][mode] = toward * (along * d[1][i] / 2 - by[1] * frame.normal[i]) / squared;
-        M[6 + i][mode] = toward * (-along * d[0][i] / 2 + by[0] * frame.normal[i]) / squared;
-      }
-    }
-    for (int i = 0; i < 3; ++i) {
-      M[3 + i][6] = toward * d[0][i] / unit;
-      M[6 + i][7] = toward * d[1][i] / unit;
-      M[3 + i][8] = toward * d[1][i] / unit;
-      M[6 + i][8] = toward * d[0][i] / unit;
-    }
-    for (int j = 3; j < Sizes::functions; ++j)
-      for (int i = 0; i < 3; ++i) M[3 * j + i][3 * j + i] = toward;
-    if (components == 7) return;
-    // Of the modes without force and moment those in the plane stay if all of it is free; what is known must not change.
-    const int axis = free(f) >> 3;
-    const bool in_plane = axis < 3 && (components | 1 << axis) == 7;
-    for (int p = 0; p < Sizes::per_facet; ++p)
-      for (int mode = 0; mode < all; ++mode)
-        if (!(components >> p % 3 & 1) || (mode >= 6 && mode < 9 && !in_plane)) M[p][mode] = 0;
-  }
 };
 
-/// The energy of a ring in its modes, and its Cholesky factor, column by column.
+/// The energy of each kind of rings in its modes, and the inverse of that.
 template <int K>
-struct FactorRings {
+struct InvertRings {
   using Modes = RingModes<K>;
   using Sizes = SpaceSizes<K>;
   Modes modes;
   SpaceForms forms;
   DeviceView<LO *> example;        // (kinds) ring
   DeviceView<std::size_t *> first; // (kinds)
-  DeviceView<double *> factor;
+  DeviceView<float *> inverse;
+  DeviceView<double *> work; // of the kinds from `from` on
+  LO from;
 
   KOKKOS_FUNCTION void add_cell(const LO ring, const int k, const int n, double *H) const
   {
@@ -133,11 +157,15 @@ struct FactorRings {
     double M[2][per_facet][both], AM[per_facet][both];
     for (int s = 0; s < 2; ++s) {
       const LO f = in.facets.ring_facet(in.facets.first_facet(ring) + of_ring[s]);
-      ordinal[s] = in.facets.ordinal(f, in.facets.cell(f, 0) == c ? 0 : 1);
-      modes.of_facet(ring, of_ring[s], M[s]);
       const double sign = in.facets.cell(f, 0) == c ? 1 : -1;
-      for (auto &row : M[s])
-        for (double &x : row) x *= sign;
+      ordinal[s] = in.facets.ordinal(f, in.facets.cell(f, 0) == c ? 0 : 1);
+      const ModesAtFacet<K> at(modes, ring, of_ring[s]);
+      for (int mode = 0; mode < both; ++mode) {
+        double y[both] = {}, t[per_facet];
+        y[mode] = 1;
+        at.expand(y, y + 6, t);
+        for (int p = 0; p < per_facet; ++p) M[s][p][mode] = sign * t[p];
+      }
     }
     for (int r = 0; r < 2; ++r)
       for (int s = 0; s < 2; ++s) {
@@ -158,76 +186,92 @@ struct FactorRings {
       }
   }
 
-  KOKKOS_FUNCTION void operator()(const LO kind) const
+  KOKKOS_FUNCTION void operator()(const LO of_batch) const
   {
-    const LO ring = example(kind);
+    const LO kind = from + of_batch, ring = example(kind);
     const int n = modes.size(ring);
-    double *const H = factor.data() + first(kind);
+    double *const H = work.data() + (first(kind) - first(from));
     for (int i = 0; i < n * n; ++i) H[i] = 0;
     for (int k = 0; k < modes.in.facets.num_ring_cells(ring); ++k) add_cell(ring, k, n, H);
-    for (int j = 0; j < n; ++j) { // column j of the factor lies at j n
+    invert(n, H);
+    float *const result = inverse.data() + first(kind);
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) result[j * n + i] = static_cast<float>(H[(i < j ? i : j) * n + (i < j ? j : i)]);
+  }
+
+  /// The lower part of the inverse, in place; 0 in rows of modes that are not there. Column j lies at j n.
+  KOKKOS_FUNCTION static void invert(const int n, double *H)
+  {
+    for (int j = 0; j < n; ++j) { // Cholesky's factor
       double *const column = H + j * n;
       const double own = column[j];
       for (int k = 0; k < j; ++k) {
         const double by = H[k * n + j];
         for (int i = j; by != 0 && i < n; ++i) column[i] -= H[k * n + i] * by;
       }
-      if (!(column[j] > 1e-12 * own)) { // a mode that is not there
+      if (!(column[j] > 1e-12 * own)) {
         for (int i = j; i < n; ++i) column[i] = 0;
+        for (int k = 0; k < j; ++k) H[k * n + j] = 0;
         continue;
       }
       const double pivot = math::sqrt(column[j]);
       for (int i = j; i < n; ++i) column[i] /= pivot;
     }
+    for (int j = n - 1; j >= 0; --j) { // its inverse M: column j from those after it
+      double *const column = H + j * n;
+      const double own = column[j] > 0 ? 1 / column[j] : 0;
+      column[j] = own;
+      for (int i = n - 1; i > j; --i) {
+        double sum = 0;
+        for (int k = j + 1; k <= i; ++k) sum += H[k * n + i] * column[k];
+        column[i] = -own * sum;
+      }
+    }
+    for (int i = 0; i < n; ++i) // M^T M
+      for (int j = 0; j <= i; ++j) {
+        double sum = 0;
+        for (int k = i; k < n; ++k) sum += H[i * n + k] * H[j * n + k];
+        H[j * n + i] = sum;
+      }
   }
 };
 
 template <int K>
 struct SolveRings {
-  using Modes = RingModes<K>;
   using Sizes = SpaceSizes<K>;
-  Modes modes;
+  RingModes<K> modes;
   DeviceView<int *> kind;
   DeviceView<std::size_t *> first;
-  DeviceView<double *> factor, answer;
+  DeviceView<float *> inverse, answer;
   Tractions g;
 
   KOKKOS_FUNCTION void operator()(const LO ring) const
   {
     const int n = modes.size(ring), facets = modes.in.facets.num_ring_facets(ring);
-    double *const y = answer.data() + modes.first(ring);
+    float *const y = answer.data() + modes.first(ring);
+    double common[6] = {};
     for (int i = 0; i < n; ++i) y[i] = 0;
+    const float *const H = inverse.data() + first(kind(ring));
     for (int k = 0; k < facets; ++k) {
-      double M[Sizes::per_facet][Modes::all], sum[Modes::all] = {};
-      modes.of_facet(ring, k, M);
-      const std::size_t from =
-          static_cast<std::size_t>(modes.in.facets.ring_facet(modes.in.facets.first_facet(ring) + k)) *
-          Sizes::per_facet;
-      for (int p = 0; p < Sizes::per_facet; ++p)
-        for (int b = 0; b < Modes::all; ++b) sum[b] += M[p][b] * g(from + p);
-      for (int b = 0; b < Modes::all; ++b) y[modes.place(k, b)] += sum[b];
+      double of_facet[RingModes<K>::own];
+      const std::size_t f = modes.in.facets.ring_facet(modes.in.facets.first_facet(ring) + k);
+      ModesAtFacet<K>(modes, ring, k).reduce(&g(f * Sizes::per_facet), common, of_facet);
+      for (int m = 0; m < RingModes<K>::own; ++m) add(H + modes.place(k, 6 + m) * n, of_facet[m], n, y);
     }
-    const double *const L = factor.data() + first(kind(ring));
-    for (int j = 0; j < n; ++j) {
-      const double *const column = L + j * n;
-      y[j] = column[j] > 0 ? y[j] / column[j] : 0;
-      for (int i = j + 1; i < n; ++i) y[i] -= column[i] * y[j];
-    }
-    for (int j = n - 1; j >= 0; --j) {
-      const double *const column = L + j * n;
-      double sum = y[j];
-      for (int i = j + 1; i < n; ++i) sum -= column[i] * y[i];
-      y[j] = column[j] > 0 ? sum / column[j] : 0;
-    }
+    for (int m = 0; m < 6; ++m) add(H + m * n, common[m], n, y);
+  }
+  KOKKOS_FUNCTION static void add(const float *column, const double factor, const int n, float *y)
+  {
+    const float by = static_cast<float>(factor);
+    for (int i = 0; i < n; ++i) y[i] += column[i] * by;
   }
 };
 
 template <int K>
 struct GatherRings {
-  using Modes = RingModes<K>;
   using Sizes = SpaceSizes<K>;
-  Modes modes;
-  DeviceView<double *> answer;
+  RingModes<K> modes;
+  DeviceView<float *> answer;
   Tractions z;
 
   KOKKOS_FUNCTION void operator()(const LO f) const
@@ -236,12 +280,12 @@ struct GatherRings {
     for (int e = 0; e < 3; ++e) {
       const LO ring = modes.in.facets.ring(f, e);
       const int k = modes.in.facets.place(f, e);
-      double M[Sizes::per_facet][Modes::all];
-      modes.of_facet(ring, k, M);
-      for (int b = 0; b < Modes::all; ++b) {
-        const double y = answer(modes.first(ring) + modes.place(k, b));
-        for (int p = 0; p < Sizes::per_facet; ++p) sum[p] += M[p][b] * y;
-      }
+      const std::size_t first = modes.first(ring), at = first + modes.place(k, 6);
+      double common[6], of_facet[RingModes<K>::own], t[Sizes::per_facet];
+      for (int m = 0; m < 6; ++m) common[m] = answer(first + m);
+      for (int m = 0; m < RingModes<K>::own; ++m) of_facet[m] = answer(at + m);
+      ModesAtFacet<K>(modes, ring, k).expand(common, of_facet, t);
+      for (int p = 0; p < Sizes::per_facet; ++p) sum[p] += t[p];
     }
     for (int p = 0; p < Sizes::per_facet; ++p) z(static_cast<std::size_t>(f) * Sizes::per_facet + p) = sum[p];
   }
@@ -293,8 +337,14 @@ RingKinds ring_kinds(const SpaceInput &in, const DeviceView<unsigned char *> &fr
   const auto kind = Kokkos::create_mirror_view(kinds.kind);
   std::map<std::vector<int>, int> found;
   std::vector<int> key;
+  const bool all_differ = 2 * in.example.extent(0) > static_cast<std::size_t>(in.num_cells());
   for (LO ring = 0; ring < in.facets.num_rings(); ++ring) {
     key.clear();
+    if (all_differ) {
+      kind(ring) = ring;
+      kinds.example.push_back(ring);
+      continue;
+    }
     const std::size_t begin = first(ring);
     const int n = static_cast<int>(first(ring + 1) - begin);
     for (int k = 0; k < count(ring); ++k) {
@@ -341,17 +391,22 @@ RingSolves::RingSolves(const SpaceInput &in, const BoundaryTractions &boundary, 
   }
   Kokkos::deep_copy(example, examples);
   Kokkos::deep_copy(first_, first);
-  factor_ = DeviceView<double *>(Kokkos::view_alloc("rpc::bound::factor", Kokkos::WithoutInitializing), total);
-  answer_ = DeviceView<double *>("rpc::bound::answer", 6 * static_cast<std::size_t>(in.facets.num_rings()) +
-                                                           own * in.facets.ring_facet.extent(0));
-  const auto range = device_range(static_cast<LO>(kinds.example.size()));
-  if (in.reference.degree == 1)
-    Kokkos::parallel_for("rpc::bound::factor_rings", range,
-                         FactorRings<1>{{in_, free_}, forms, example, first_, factor_});
-  else
-    Kokkos::parallel_for("rpc::bound::factor_rings", range,
-                         FactorRings<2>{{in_, free_}, forms, example, first_, factor_});
-  Kokkos::fence();
+  inverse_ = DeviceView<float *>(Kokkos::view_alloc("rpc::bound::inverse", Kokkos::WithoutInitializing), total);
+  answer_ = DeviceView<float *>("rpc::bound::answer", 6 * static_cast<std::size_t>(in.facets.num_rings()) +
+                                                          own * in.facets.ring_facet.extent(0));
+  constexpr LO batch = 1024; // kinds at once: what bounds the work space
+  const LO num_kinds = static_cast<LO>(kinds.example.size());
+  for (LO from = 0; from < num_kinds; from += batch) {
+    const LO to = std::min(num_kinds, from + batch);
+    const DeviceView<double *> work("rpc::bound::work", (to < num_kinds ? first(to) : total) - first(from));
+    if (in.reference.degree == 1)
+      Kokkos::parallel_for("rpc::bound::invert_rings", device_range(to - from),
+                           InvertRings<1>{{in, free_}, forms, example, first_, inverse_, work, from});
+    else
+      Kokkos::parallel_for("rpc::bound::invert_rings", device_range(to - from),
+                           InvertRings<2>{{in, free_}, forms, example, first_, inverse_, work, from});
+    Kokkos::fence();
+  }
 }
 
 void RingSolves::apply(const Tractions &g, const Tractions &z) const
@@ -359,11 +414,11 @@ void RingSolves::apply(const Tractions &g, const Tractions &z) const
   const auto rings = device_range(in_.facets.num_rings()), facets = device_range(in_.facets.size());
   if (in_.reference.degree == 1) {
     const RingModes<1> modes{in_, free_};
-    Kokkos::parallel_for("rpc::bound::solve_rings", rings, SolveRings<1>{modes, kind_, first_, factor_, answer_, g});
+    Kokkos::parallel_for("rpc::bound::solve_rings", rings, SolveRings<1>{modes, kind_, first_, inverse_, answer_, g});
     Kokkos::parallel_for("rpc::bound::gather_rings", facets, GatherRings<1>{modes, answer_, z});
   } else {
     const RingModes<2> modes{in_, free_};
-    Kokkos::parallel_for("rpc::bound::solve_rings", rings, SolveRings<2>{modes, kind_, first_, factor_, answer_, g});
+    Kokkos::parallel_for("rpc::bound::solve_rings", rings, SolveRings<2>{modes, kind_, first_, inverse_, answer_, g});
     Kokkos::parallel_for("rpc::bound::gather_rings", facets, GatherRings<2>{modes, answer_, z});
   }
   Kokkos::fence();

@@ -11,7 +11,7 @@ namespace rpc::bound
 class RingSolves
 {
 public:
-  /// Factors the energy of each kind of rings: cells of the same kinds in the same places.
+  /// Inverts the energy of each kind of rings: cells of the same kinds in the same places.
   RingSolves(const SpaceInput &in, const BoundaryTractions &boundary, const SpaceForms &forms);
   /// z <- sum over the rings of what least energy answers to the derivative g with.
   void apply(const Tractions &g, const Tractions &z) const;
@@ -21,9 +21,9 @@ private:
   SpaceInput in_;
   DeviceView<unsigned char *> free_; // (facets) which components are free, and what the facet can hand on
   DeviceView<int *> kind_;           // (rings)
-  DeviceView<std::size_t *> first_;  // (kinds) where the factor begins, column by column
-  DeviceView<double *> factor_;
-  DeviceView<double *> answer_; // (6 rings + modes of facets)
+  DeviceView<std::size_t *> first_;  // (kinds) where its inverse begins
+  DeviceView<float *> inverse_;      // it only steers the descent
+  DeviceView<float *> answer_;       // (6 rings + modes of facets)
 };
 
 } // namespace rpc::bound

@@ -212,13 +212,12 @@ SpaceContact space_side(const analysis::Problem &problem, const analysis::Model 
     c.area.push_back(host.area(f));
     const Point n = host.normal(f);
     if (c.area.size() == 1) {
-      const Point a = host.corner(f, 0), b = host.corner(f, 1);
-      double size = 0;
-      for (int d = 0; d < 3; ++d) size += (b[d] - a[d]) * (b[d] - a[d]);
-      for (int d = 0; d < 3; ++d) {
-        axis[0][d] = (b[d] - a[d]) / std::sqrt(size);
-        c.normal[d] = n[d] / c.area[0];
-      }
+      for (int d = 0; d < 3; ++d) c.normal[d] = n[d] / c.area[0];
+      int least = 0; // the axis that lies most along the side
+      for (int d = 1; d < 3; ++d)
+        if (std::abs(c.normal[d]) < std::abs(c.normal[least]) - 1e-10) least = d;
+      const double length = std::sqrt(1 - c.normal[least] * c.normal[least]);
+      for (int d = 0; d < 3; ++d) axis[0][d] = ((d == least) - c.normal[least] * c.normal[d]) / length;
       for (int d = 0; d < 3; ++d) {
         const int i = (d + 1) % 3, j = (d + 2) % 3;
         axis[1][d] = c.normal[i] * axis[0][j] - c.normal[j] * axis[0][i];
@@ -255,16 +254,21 @@ SpaceContact space_side(const analysis::Problem &problem, const analysis::Model 
   for (int i = first; i < last; ++i)
     for (int d = 0; d < 3; ++d)
       RPC_REQUIRE(std::abs(normal(i, d) - c.normal[d]) <= 1e-10, contact_not_covered(options, "its normals differ"));
-  for (std::size_t e = 0; e < c.facet.size(); ++e) { // where materials meet pressures jump, and a node has a mean
+  // Where materials meet pressures jump, and a node has a mean; where the node is held it has none.
+  for (std::size_t e = 0; e < c.facet.size(); ++e) {
+    const auto is_own = [&](const int a) {
+      const int i = c.point[e][a];
+      return c.free[i] && blocks_at[i].size() == 1;
+    };
     double sum = 0;
     int known = 0;
     for (int a = 0; a < 3; ++a)
-      if (blocks_at[c.point[e][a]].size() == 1) {
+      if (is_own(a)) {
         sum += c.pressure[e][a];
         ++known;
       }
     for (int a = 0; a < 3 && known > 0; ++a)
-      if (blocks_at[c.point[e][a]].size() > 1) c.pressure[e][a] = sum / known;
+      if (!is_own(a)) c.pressure[e][a] = sum / known;
   }
   require_linear_gap(options, host, c, gaps);
   return c;

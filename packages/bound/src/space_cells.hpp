@@ -12,8 +12,8 @@ namespace rpc::bound
 ///
 ///     E_T(t) = t . A t/2 + b . t + const.                                                             doc/theory.md (13.8)
 struct SpaceForms {
-  DeviceView<double ***> A; ///< (kinds, tractions, tractions)
-  DeviceView<double **> b;  ///< (kinds, tractions) what the body force adds
+  DeviceView<float ***> A; ///< (kinds, tractions, tractions); it only steers the descent
+  DeviceView<double **> b; ///< (kinds, tractions) what the body force adds
   DeviceView<double ***>
       inner; ///< (kinds, tractions + 1, inner) the best inner stresses by tractions of the image; the last row is that of the body force
   DeviceView<double *> boundary; ///< (facets * polynomials * 3) what the displacement on the boundary adds

@@ -3,7 +3,10 @@
 
 #include "reference_stress.hpp"
 #include "rpc/core/math.hpp"
+#include "rpc/core/tpetra.hpp"
 #include "space_facets.hpp"
+
+#include <utility>
 
 namespace rpc::bound
 {
@@ -124,6 +127,24 @@ KOKKOS_INLINE_FUNCTION void compliance_of_images(const SpaceInput &in, const Aff
     for (int j = 0; j < 6; ++j) {
       S[i][j] = 0;
       for (int k = 0; k < 6; ++k) S[i][j] += T[k][i] * CT[k][j] * cell.determinant;
+    }
+}
+
+using ReadDisplacement = decltype(device_read(std::declval<const Vector &>()));
+
+/// du_i / dX_l from gradients of the shape functions.
+template <class Gradient>
+KOKKOS_INLINE_FUNCTION void gradient_in_space(const SpaceInput &in, const AffineTetrahedron &cell, const LO c,
+                                              const ReadDisplacement &u, const Gradient &gradient, double (&D)[3][3])
+{
+  double H[3][3] = {};
+  for (int a = 0; a < static_cast<int>(in.cells.extent(1)); ++a)
+    for (int i = 0; i < 3; ++i)
+      for (int l = 0; l < 3; ++l) H[i][l] += u(dof(3, in.cells(c, a), i)) * gradient(a, l);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      D[i][j] = 0;
+      for (int l = 0; l < 3; ++l) D[i][j] += H[i][l] * cell.inverse[l][j];
     }
 }
 

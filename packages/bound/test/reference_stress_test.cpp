@@ -183,6 +183,76 @@ TEST(ReferenceStress, IntegratesProductsOfItsStresses)
   }
 }
 
+/// Of a tetrahedron: component c of the stress of a column in a part, by monomials 1; X, Y, Z; X^2, XY, XZ, Y^2, YZ, Z^2.
+struct FieldInSpace {
+  const ReferenceStress r;
+  std::vector<double> coefficient;
+
+  FieldInSpace(const ReferenceStress &reference, const int column) : r(reference)
+  {
+    const auto stress = to_host(r.stress);
+    for (int i = 0; i < r.coefficients(); ++i) coefficient.push_back(stress(i, column));
+  }
+  double at(const int part, const int component, const std::array<double, 3> &x) const
+  {
+    const double m[10] = {1,           x[0],        x[1],        x[2],        x[0] * x[0],
+                          x[0] * x[1], x[0] * x[2], x[1] * x[1], x[1] * x[2], x[2] * x[2]};
+    double sum = 0;
+    for (int k = 0; k < r.monomials; ++k) sum += coefficient[(part * 6 + component) * r.monomials + k] * m[k];
+    return sum;
+  }
+  std::array<double, 3> row(const int part, const int i, const std::array<double, 3> &x) const
+  {
+    constexpr int component[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
+    return {at(part, component[i][0], x), at(part, component[i][1], x), at(part, component[i][2], x)};
+  }
+};
+
+TEST(ReferenceStress, InSpaceHasNoDivergenceAndContinuousTractions)
+{
+  const std::array<double, 3> vertex[4] = {
+      {-0.25, -0.25, -0.25}, {0.75, -0.25, -0.25}, {-0.25, 0.75, -0.25}, {-0.25, -0.25, 0.75}};
+  for (const int order : {1, 2}) {
+    mesh::Element tetrahedron = element(order, mesh::Shape::simplex);
+    tetrahedron.dim = 3;
+    const ReferenceStress r = reference_stress(tetrahedron);
+    EXPECT_EQ(r.tractions, order == 1 ? 36 : 72);
+    EXPECT_EQ(r.inner, order == 1 ? 0 : 18);
+    for (int column = 0; column < r.columns(); ++column) {
+      const FieldInSpace s(r, column);
+      const double h = 0.25; // central differences are exact for degree 2
+      for (int part = 0; part < 4; ++part)
+        for (int i = 0; i < 3; ++i) {
+          double divergence = 0;
+          for (int d = 0; d < 3; ++d) {
+            std::array<double, 3> more{0.1, 0.2, -0.1}, less = more;
+            more[d] += h;
+            less[d] -= h;
+            divergence += (s.row(part, i, more)[d] - s.row(part, i, less)[d]) / (2 * h);
+          }
+          EXPECT_NEAR(divergence, 0, 1e-11);
+        }
+      for (int a = 0; a < 4; ++a)
+        for (int b = 0; b < a; ++b) { // parts a and b meet in what the other two vertices make with the centre
+          int others[2], k = 0;
+          for (int v = 0; v < 4; ++v)
+            if (v != a && v != b) others[k++] = v;
+          const auto &e = vertex[others[0]], &f = vertex[others[1]];
+          for (const auto &[y, z] : {std::pair<double, double>{0.2, 0.3}, {0.9, 0.05}, {0, 1}, {0.1, 0.6}})
+            for (int i = 0; i < 3; ++i) {
+              const std::array<double, 3> x{y * e[0] + z * f[0], y * e[1] + z * f[1], y * e[2] + z * f[2]};
+              double jump = 0;
+              for (int d = 0; d < 3; ++d) {
+                const int p = (d + 1) % 3, q = (d + 2) % 3;
+                jump += (s.row(a, i, x)[d] - s.row(b, i, x)[d]) * (e[p] * f[q] - e[q] * f[p]);
+              }
+              EXPECT_NEAR(jump, 0, 1e-11);
+            }
+        }
+    }
+  }
+}
+
 TEST(Gauss, IsExactAndLegendreOrthogonal)
 {
   for (int n = 1; n <= 8; ++n) {

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "space_contact.hpp"
+
+#include "facet_polynomials.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <numeric>
+
+namespace space_contact_test
+{
+namespace
+{
+
+using namespace rpc;
+using namespace rpc::bound;
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+/// A square of 2 n^2 triangles whose nodes bear the forces of a pressure, a third of a triangle each.
+template <class Pressure>
+SpaceContact square(const int n, const double limit, const Pressure &pressure)
+{
+  SpaceContact c;
+  c.limit = limit;
+  c.modulus = 1000;
+  c.normal = {0, 0, -1};
+  c.force.assign((n + 1) * (n + 1), 0.);
+  c.free.assign((n + 1) * (n + 1), 1);
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= n; ++j) c.place.push_back({double(i), double(j)});
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (int upper = 0; upper < 2; ++upper) {
+        const int a = i * (n + 1) + j, b = a + n + 1;
+        c.point.push_back(upper ? std::array<int, 3>{a, a + 1, b + 1} : std::array<int, 3>{a, b, b + 1});
+        c.facet.push_back(static_cast<LO>(c.facet.size()));
+        c.area.push_back(0.5);
+        c.pressure.push_back({});
+        for (int v = 0; v < 3; ++v) {
+          const auto &x = c.place[c.point.back()[v]];
+          c.pressure.back()[v] = pressure(x[0], x[1]);
+          c.force[c.point.back()[v]] += c.pressure.back()[v] / 6;
+        }
+      }
+  return c;
+}
+
+TEST(TriangleIntegrals, AreThoseOfHandAlgebra)
+{
+  // v = 1 - 2 (y + z) in barycentric x, y, z: positive where x > 1/2, a quarter of the area, with the mean 1/3 there.
+  const TriangleIntegrals even = contact_integrals({1, -1, -1}, {2, 2, 2}, 6);
+  EXPECT_NEAR(even.yielding, 6. / 12, 1e-14);
+  // (xi - p) v+ + p v-: 4/12, and 2 (v+ - v) with the mean of v -1/3.
+  EXPECT_NEAR(even.gap, 4. / 12 + 2 * (1. / 12 + 1. / 3), 1e-14);
+  const TriangleIntegrals off = contact_integrals({-1, -1, -2}, {2, 2, 2}, inf);
+  EXPECT_EQ(off.yielding, 0);
+  EXPECT_NEAR(off.gap, 8. / 3, 1e-14);
+  EXPECT_EQ(contact_integrals({0, 0, 0}, {2, 1, 2}, inf).gap, 0);
+}
+
+TEST(TriangleIntegrals, AreThoseOfManyPoints)
+{
+  const FacetRule rule = refined(3, facet_rule(3, 2), 200);
+  EXPECT_NEAR(std::accumulate(rule.weight.begin(), rule.weight.end(), 0.), 1, 1e-12);
+  for (const auto &[v, p] :
+       {std::pair<OfTriangle, OfTriangle>{{0.3, -0.7, 0.2}, {1, 2, 0.5}}, {{-0.3, -0.2, 0.9}, {0, 3, 1}}}) {
+    double yielding = 0, gap = 0;
+    for (int q = 0; q < rule.size(); ++q) {
+      double depth = 0, pressure = 0;
+      for (int k = 0; k < 3; ++k) {
+        depth += v[k] * rule.point[q][k];
+        pressure += p[k] * rule.point[q][k];
+      }
+      yielding += rule.weight[q] * 4 * std::max(depth, 0.);
+      gap += rule.weight[q] * ((4 - pressure) * std::max(depth, 0.) + pressure * std::max(-depth, 0.));
+    }
+    const TriangleIntegrals exact = contact_integrals(v, p, 4);
+    EXPECT_NEAR(exact.yielding, yielding, 1e-5);
+    EXPECT_NEAR(exact.gap, gap, 1e-5);
+  }
+}
+
+TEST(FittedPressureInSpace, IsTheOneThatTheForcesComeFromWhereThatIsLinear)
+{
+  const SpaceContact c = square(6, inf, [](const double, const double) { return 7.; });
+  for (const OfTriangle &p : fitted_pressure(c, std::vector<OfTriangle>(c.facet.size(), OfTriangle{})))
+    for (const double x : p) EXPECT_NEAR(x, 7, 1e-3);
+}
+
+TEST(FittedPressureInSpace, KeepsToTheYieldStressAndNearToTheForces)
+{
+  const SpaceContact c =
+      square(8, 5, [](const double x, const double y) { return std::clamp(9 - 1.1 * x - 0.6 * y, 0., 5.); });
+  double force = 0, moment = 0;
+  const auto p = fitted_pressure(c, std::vector<OfTriangle>(c.facet.size(), OfTriangle{}));
+  for (std::size_t e = 0; e < p.size(); ++e)
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_GE(p[e][i], 0);
+      EXPECT_LE(p[e][i], 5);
+      force += c.area[e] * p[e][i] / 3;
+      for (int j = 0; j < 3; ++j) moment += c.area[e] * (i == j ? 2 : 1) / 12. * p[e][i] * c.place[c.point[e][j]][0];
+    }
+  const double wanted = std::accumulate(c.force.begin(), c.force.end(), 0.);
+  double wanted_moment = 0;
+  for (std::size_t i = 0; i < c.force.size(); ++i) wanted_moment += c.force[i] * c.place[i][0];
+  EXPECT_NEAR(force, wanted, 2e-3 * wanted);
+  EXPECT_NEAR(moment, wanted_moment, 5e-3 * wanted_moment);
+}
+
+TEST(FacetPolynomials, AreOrthogonalAndExpandLinearFunctions)
+{
+  const FacetPolynomials polynomials(3, 3);
+  ASSERT_EQ(polynomials.size(), 10);
+  const FacetRule rule = facet_rule(3, 5);
+  for (int i = 0; i < 10; ++i)
+    for (int j = 0; j < 10; ++j) {
+      double mean = 0;
+      for (int q = 0; q < rule.size(); ++q)
+        mean += rule.weight[q] * polynomials(i, rule.point[q]) * polynomials(j, rule.point[q]);
+      EXPECT_NEAR(mean, i == j ? 1 : 0, 1e-12);
+    }
+}
+
+} // namespace
+} // namespace space_contact_test

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rpc/core/error.hpp"
+#include "run_scene.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+// Guaranteed bounds of bodies in space, doc/theory.md, section 13. The table comes from independent code.
+
+namespace error_bound_in_space_test
+{
+namespace
+{
+
+using namespace rpc;
+
+const std::string deck = std::string(RPC_TEST_DECKS) + "/clamped_block.xml";
+
+Solution bounded(std::vector<std::string> assignments, const std::string &of = deck)
+{
+  assignments.push_back("Adapt->Error Bound=guaranteed");
+  Solution s = run_scene(of, assignments);
+  EXPECT_TRUE(s.bound);
+  EXPECT_EQ(s.bound->missing, "");
+  return s;
+}
+
+Solution finer(std::vector<std::string> assignments, const std::string &cells, const std::string &of = deck)
+{
+  assignments.insert(assignments.end(), {"Mesh->Element=P2", "Mesh->Cells=" + cells, "Adapt->Error Bound=estimated"});
+  return run_scene(of, assignments);
+}
+
+TEST(ErrorBoundInSpace, OfABlockIsThatOfATable)
+{
+  // J(u^) and the bound after 0 to 6 steps. At xi = 1 and 0.2 all facets yield, so that the pressure is unique; at xi = inf all are closed.
+  struct Row {
+    const char *limit;
+    double energy, bound[7];
+  };
+  const Row table[] = {
+      {"1", -0.51155268, {8.027756, 1.122892, 0.7487193, 0.6062920, 0.5462927, 0.5001992, 0.4771354}},
+      {"0.2", -0.63041661, {9.906214, 1.392126, 0.9316023, 0.7558070, 0.6817035, 0.6247341, 0.5959876}},
+      {"inf", -0.14068611, {0.4961460, 0.07266163, 0.04196190, 0.03244007, 0.02853472, 0.02580450, 0.02447184}}};
+  for (const Row &row : table) {
+    SCOPED_TRACE(row.limit);
+    const Solution s = bounded({std::string("Contact->Yield Stress=") + row.limit});
+    EXPECT_NEAR(s.bound->upper, row.energy, 1e-8);
+    ASSERT_EQ(s.bound->steps.size(), 7u);
+    constexpr double allowed = 5e-5; // what steers the descent is of single precision
+    for (int k = 0; k < 7; ++k)
+      EXPECT_NEAR(s.bound->steps[k], row.bound[k], allowed * row.bound[k]) << "after " << k << " steps";
+    EXPECT_LT(s.bound->imbalance, 1e-12);
+    EXPECT_NEAR(s.bound->lower, s.bound->upper - s.bound->steps[6], 1e-12);
+  }
+}
+
+TEST(ErrorBoundInSpace, HoldsTheEnergyOfAFinerMeshAndIsNear)
+{
+  // Open, closed and yielding parts; a load that no polynomial of degree 1 has; a force per volume; sides that slide.
+  const std::vector<std::vector<std::string>> scenes = {
+      {"Contact->Yield Stress=inf"},
+      {"Contact->Yield Stress=6", "Contact->Gap=0.02*x - 0.01"},
+      {"Contact->Yield Stress=8", "Traction->front->Z=-6*sin(1 + x*y)", "Body Force->Z=-3", "Body Force->X=2"},
+      {"Traction->front->X=2", "Dirichlet->bottom->Y=0", "Dirichlet->top->Y=0", "Contact->Gap=0.001"}};
+  for (const auto &scene : scenes) {
+    SCOPED_TRACE(scene.back());
+    std::vector<std::string> more = scene;
+    more.push_back("Mesh->Cells={8, 6, 4}");
+    const Solution s = bounded(more), fine = finer(scene, "{8, 6, 4}");
+    ASSERT_TRUE(fine.estimate);
+    const double left = fine.estimate->total() / 2, true_error = s.bound->upper - (fine.energy - left);
+    EXPECT_LT(s.bound->lower, fine.energy - left);
+    EXPECT_GT(s.bound->upper, fine.energy);
+    EXPECT_LT(s.bound->upper - s.bound->lower, 1.5 * 1.5 * true_error);
+    EXPECT_LT(s.bound->imbalance, 1e-11);
+    for (int k = 0; k < 6; ++k) EXPECT_LT(s.bound->steps[k + 1], s.bound->steps[k]);
+  }
+}
+
+TEST(ErrorBoundInSpace, IsZeroWhereTheElementsHaveTheSolution)
+{
+  // A block under an even pressure of 2.55 Pa, or 2 Pa where it yields, that slides at its sides: constant stresses, in contact or yielding.
+  for (const char *limit : {"inf", "2"}) {
+    SCOPED_TRACE(limit);
+    const Solution s = bounded({std::string("Contact->Yield Stress=") + limit},
+                               std::string(RPC_TEST_DECKS) + "/even_block_in_space.xml");
+    EXPECT_GT(s.energy_norm_squared, 1e-6);
+    for (const double bound : s.bound->steps) EXPECT_LT(bound, 1e-11 * s.energy_norm_squared);
+  }
+}
+
+TEST(ErrorBoundInSpace, IsRefusedWithWhatIsCovered)
+{
+  const auto refused = [](std::vector<std::string> assignments, const std::string &part) {
+    SCOPED_TRACE(part);
+    assignments.push_back("Adapt->Error Bound=guaranteed");
+    try {
+      run_scene(deck, assignments);
+      ADD_FAILURE() << "not refused";
+    } catch (const Error &error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("guaranteed covers"), std::string::npos) << error.what();
+    }
+  };
+  refused({"Mesh->Element=P2"}, "the cells are P2");
+  refused({"Mesh->Element=Q1"}, "the cells are Q1");
+  refused({"Contact->Gap=0.01*x^2"}, "another than between its nodes");
+  refused({"Contact->Yield Stress=5", "Contact->Hardening=3"}, "Hardening");
+  refused({"Traction->front->Z=x > 1.1 ? -10 : 0"}, "smooth within each cell");
+  refused({"Material->Poisson's Ratio=0.45"}, "projected dilatation");
+}
+
+} // namespace
+} // namespace error_bound_in_space_test
