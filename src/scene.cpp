@@ -97,6 +97,21 @@ Teuchos::ParameterList read_parameters(const std::string &deck_path, const std::
   return deck;
 }
 
+/// What a periodic box does not go with.
+void require_fit_for_periodic(const Scene &scene)
+{
+  const auto *const box = std::get_if<mesh::BoxOptions>(&scene.mesh);
+  if (!box || !mesh::periodic(*box)) return;
+  RPC_REQUIRE(
+      scene.model.kinematics != fem::Kinematics::axisymmetric,
+      "deck: \"Mesh->Periodic\" does not go with \"Kinematics\" = axisymmetric. Write plane strain or plane stress");
+  for (const auto &side : scene.model.contact)
+    RPC_REQUIRE(side.dents_move_with != contact::DentsMoveWith::foundation,
+                "deck: \"" << side.path
+                           << "->Dents Move With\" = foundation does not go with \"Mesh->Periodic\": dents are not "
+                           << "followed across joined sides. Write body");
+}
+
 Scene read_scene(const std::string &deck_path, const std::vector<std::string> &assignments, const Comm &comm)
 {
   Teuchos::ParameterList deck = read_parameters(deck_path, assignments, comm);
@@ -149,6 +164,7 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   scene.output = {exodus != "none", output.get<bool>("CSV"), output.get<bool>("JSON"),
                   exodus == "split" ? io::ExodusFiles::split : io::ExodusFiles::joined, output.get<bool>("Timers")};
   scene.output.points = points_options(output.sublist("Points"), dim);
+  require_fit_for_periodic(scene);
   adapt::require_adaptable(scene);
   scene.notes = notes_on_deck(deck, scene);
   return scene;

@@ -180,7 +180,7 @@ std::unique_ptr<io::ExodusFile> Film::opened(const Scene &scene, const analysis:
 {
   std::vector<std::string> cell_names;
   if (scene.adapt.estimate) cell_names.emplace_back(error_field);
-  return std::make_unique<io::ExodusFile>(path, scene.name, *mesh_, fields,
+  return std::make_unique<io::ExodusFile>(path, scene.name, *on_file_.mesh, fields,
                                           unit_records(scene.model.units, s.discretization.per_length()),
                                           std::vector<io::NamedArray>(), scene.output.exodus_files, cell_names);
 }
@@ -215,13 +215,14 @@ void Film::go_on(const Scene &scene, const analysis::Solution &s, const std::str
 void Film::write(const Scene &scene, const analysis::Solution &s, const std::string &folder)
 {
   const Timed timer("film", seconds_);
-  const auto fields = nodal_fields(scene, s);
+  auto fields = nodal_fields(scene, s);
   if (!file_ || mesh_ != s.discretization.mesh) {
     if (file_) file_->commit();
     file_.reset();
     std::vector<std::string> names;
     for (const auto &field : fields) names.push_back(field.name);
     mesh_ = s.discretization.mesh;
+    on_file_ = mesh::unrolled(mesh_);
     const std::string first = ResultPaths(scene, folder).exodus;
     if (files_.empty() && scene.has_steps()) go_on(scene, s, first, names);
     if (!file_) {
@@ -229,6 +230,7 @@ void Film::write(const Scene &scene, const analysis::Solution &s, const std::str
       file_ = opened(scene, s, files_.back(), names);
     }
   }
+  for (auto &field : fields) field.values = on_file_.at_nodes(field.values);
   file_->write(s.time, fields, cell_fields(scene, s));
   if (scene.has_steps()) file_->publish();
   written_ = number_of(s);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rpc/io/exodus.hpp"
+#include "rpc/mesh/unrolled.hpp"
 #include "scene.hpp"
 
 #include <memory>
@@ -32,7 +33,8 @@ private:
   void go_on(const Scene &scene, const analysis::Solution &solution, const std::string &first,
              const std::vector<std::string> &fields);
 
-  std::shared_ptr<const mesh::Mesh> mesh_; // which the file reads until its end
+  std::shared_ptr<const mesh::Mesh> mesh_;
+  mesh::Unrolled on_file_; // its mesh, which the file reads until its end
   std::unique_ptr<io::ExodusFile> file_;
   int written_ = 0; // number of the last step that is in
   std::vector<std::string> files_;

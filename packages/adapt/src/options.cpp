@@ -109,6 +109,10 @@ void require_adaptable(const Task &task)
       "deck: \"Adapt->Meshes\" = gmsh goes with a box or a geometry, which can be meshed anew; the mesh is a file "
       "of cells. Its cells can be halved: nested, if they are triangles or tetrahedra.");
   const bool bounded = task.adapt.bound == ErrorBound::guaranteed, errors = task.adapt.estimate || bounded;
+  const auto *const box = std::get_if<mesh::BoxOptions>(&task.mesh);
+  RPC_REQUIRE(!errors || !box || !mesh::periodic(*box), "deck: \"Adapt\" does not go with \"Mesh->Periodic\": errors "
+                                                        "are not estimated across joined sides, and adapted meshes "
+                                                        "have none. Leave \"Adapt\" out.");
   const auto &contact = task.model.contact;
   for (std::size_t a = 0; a < contact.size() && errors; ++a)
     for (std::size_t b = 0; b < a; ++b)
@@ -132,7 +136,6 @@ void require_adaptable(const Task &task)
                "place that the force has led to.");
   if (!bounded) return;
   bound::require_covered(task);
-  const auto *const box = std::get_if<mesh::BoxOptions>(&task.mesh);
   RPC_REQUIRE(!task.adapt.adapts() || nests(task.mesh, task.adapt) || !box ||
                   box->element.shape == mesh::Shape::simplex,
               "deck: \"Adapt->Error Bound\" = guaranteed covers parallelograms, and the quadrilaterals that gmsh makes "

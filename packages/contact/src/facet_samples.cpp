@@ -121,7 +121,7 @@ FacetRows facet_rows(const fem::Discretization &d, const mesh::Side &facets, con
   const auto columns = at_overlap_nodes(d, points, result, side);
   const auto column = columns->getLocalViewDevice(Tpetra::Access::ReadOnly);
   const auto coords = d.mesh->coords;
-  const auto node_of = facets.facets;
+  const auto node_of = facets.facets, place_of = facets.places();
   const auto measure = fem::facet_measure(d, facets);
   const int quadrature = num_facets > 0 ? static_cast<int>(measure.extent(0)) / num_facets : 0;
   Kokkos::parallel_for(
@@ -130,7 +130,7 @@ FacetRows facet_rows(const fem::Discretization &d, const mesh::Side &facets, con
         for (int a = 0; a < nodes; ++a) {
           const LO node = node_of(f, a);
           for (int k = 0; k < dim; ++k) {
-            row(f, a * width + k) = coords(node, k);
+            row(f, a * width + k) = coords(place_of(f, a), k);
             row(f, a * width + dim + k) = x(rpc::dof(dim, node, k));
           }
           for (int k = 0; k < FacetRows::num_columns; ++k) row(f, a * width + 2 * dim + k) = column(node, k);

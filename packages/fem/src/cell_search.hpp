@@ -11,7 +11,7 @@ namespace rpc::fem
 /// Cells among which places are looked for: those that one rank owns.
 struct SearchedCells {
   DeviceView<double **> coords; ///< (overlap nodes, dim) [m]
-  DeviceView<LO **> cells;      ///< (local cells, nodes per cell)
+  DeviceView<LO **> places;     ///< (local cells, nodes per cell) rows of coords
   DeviceView<GO *> id;          ///< (searched cells) the same on any number of ranks
   LO count = 0;
 };
@@ -217,7 +217,7 @@ struct FindPlaces {
   {
     double seen[Nodes][Dim]; // nodes from x: differences lose nothing far from the origin
     for (int a = 0; a < Nodes; ++a)
-      for (int d = 0; d < Dim; ++d) seen[a][d] = mesh.coords(mesh.cells(c, a), d) - x[d];
+      for (int d = 0; d < Dim; ++d) seen[a][d] = mesh.coords(mesh.places(c, a), d) - x[d];
     double N[Nodes], dN[Nodes][Dim];
     place.cell = c;
     place.id = mesh.id(c);

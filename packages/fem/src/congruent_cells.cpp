@@ -37,7 +37,7 @@ KOKKOS_INLINE_FUNCTION double magnitude(const double x)
 template <int Dim>
 struct TakeKind {
   DeviceView<double **> coords;      // (overlap nodes, Dim)  [m]  in
-  DeviceView<LO **> cells;           // (cells, nodes)             in
+  DeviceView<LO **> cells;           // (cells, nodes)             in, rows of coords
   LO example;                        // cell                       in
   signed char kind;                  //                            in
   DeviceView<signed char *> of_cell; // (cells)                    inout
@@ -72,7 +72,7 @@ struct TakeKind {
 template <int Dim>
 LO take_kind(const mesh::Mesh &mesh, const signed char kind, const DeviceView<signed char *> &of_cell, LO &next)
 {
-  const TakeKind<Dim> kernel{mesh.coords, mesh.cells, next, kind, of_cell};
+  const TakeKind<Dim> kernel{mesh.coords, mesh.places(), next, kind, of_cell};
   LO took = 0;
   Kokkos::parallel_reduce("rpc::fem::congruent_cells", device_range(mesh.num_cells()), kernel, Kokkos::Sum<LO>(took),
                           Kokkos::Min<LO>(next));
@@ -88,7 +88,7 @@ std::vector<double> shapes_of(const mesh::Mesh &mesh, const std::vector<LO> &exa
   const auto example = device_values(examples, "rpc::fem::kind_example");
   const DeviceView<double *> shape("rpc::fem::kind_shape", kinds * size);
   const auto coords = mesh.coords;
-  const auto cells = mesh.cells;
+  const auto cells = mesh.places();
   Kokkos::parallel_for(
       "rpc::fem::kind_shape", device_range(kinds), KOKKOS_LAMBDA(const LO kind) {
         double farthest = 0;

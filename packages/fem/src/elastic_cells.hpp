@@ -4,6 +4,7 @@
 #include "kernels.hpp"
 #include "patch_polynomial.hpp"
 #include "rpc/fem/elasticity.hpp"
+#include "rpc/mesh/box.hpp"
 
 /// The cells of an elastic body as all its kernels see them: geometry, material, and one reading of the strain.
 namespace rpc::fem
@@ -42,6 +43,15 @@ struct Projection {
   }
 };
 
+/// The way from a place to the nearest image of another one, along a direction.
+/// @param period  0: there are no images
+KOKKOS_INLINE_FUNCTION double to_nearest_image(const double way, const double period)
+{
+  if (period > 0 && way > period / 2) return way - period;
+  if (period > 0 && way < -period / 2) return way + period;
+  return way;
+}
+
 /// The cells of an elastic body: geometry, quadrature and material, with the dilatation in full or projected.
 ///
 /// The gradient of a displacement is (Dim, Dim), of an axisymmetric body (3, 3) with u_r/r as its last entry; so are the
@@ -57,15 +67,17 @@ struct ElasticCells {
   using Tensor = double[columns][columns];
   using Coords = CellCoords<Dim, Nodes>;
 
-  DeviceView<double **> coords;    // (overlap nodes, Dim)  [m]   in
-  DeviceView<LO **> cells;         // (cells, Nodes)              in, overlap lids
-  DeviceView<int *> block;         // (cells)                     in
-  DeviceView<double **> value;     // (points, Nodes)             in
-  DeviceView<double ***> gradient; // (points, Nodes, Dim)        in
-  DeviceView<double *> weight;     // (points)                    in
-  DeviceView<double **> lame;      // (blocks; lambda, mu)  [Pa]  in
-  DeviceView<int *> projected;     // (blocks) 0 or 1             in
-  bool plane_stress;               // no stress across the plane  in
+  DeviceView<double **> coords;      // (places, Dim)         [m]   in
+  DeviceView<LO **> places;          // (cells, Nodes)              in, rows of coords
+  DeviceView<LO **> cells;           // (cells, Nodes)              in, overlap lids
+  DeviceView<int *> block;           // (cells)                     in
+  DeviceView<double **> value;       // (points, Nodes)             in
+  DeviceView<double ***> gradient;   // (points, Nodes, Dim)        in
+  DeviceView<double *> weight;       // (points)                    in
+  DeviceView<double **> lame;        // (blocks; lambda, mu)  [Pa]  in
+  DeviceView<int *> projected;       // (blocks) 0 or 1             in
+  bool plane_stress;                 // no stress across the plane  in
+  Kokkos::Array<double, 3> period{}; // 0: does not repeat itself   [m]   in
   // Of congruent cells, (kinds, points): gradients [1/m], and integration weights [m^Dim]. Empty: cells differ.
   DeviceView<signed char *> kind; // (cells)                            in
   DeviceView<double **[Nodes][columns]> kind_gradient;
@@ -140,7 +152,7 @@ struct ElasticCells {
   {
     if constexpr (may_project) {
       if (projects(cell)) {
-        const Coords x(coords, cells, cell);
+        const Coords x(coords, places, cell);
         Projection<Dim, Nodes> projection;
         if (!project(cell, projection)) return false;
         return at_plain_points(cell, [&](const int q, const double volume, const Gradients &dN) {
@@ -168,7 +180,7 @@ struct ElasticCells {
   KOKKOS_FUNCTION bool project(const LO cell, Projection<Dim, Nodes> &projection) const
   {
     constexpr int modes = Projection<Dim, Nodes>::modes;
-    const Coords x(coords, cells, cell);
+    const Coords x(coords, places, cell);
     for (int i = 0; i < Dim; ++i) {
       projection.centre[i] = 0;
       for (int a = 0; a < Nodes; ++a) projection.centre[i] += x.x[a][i] / Nodes;
@@ -211,7 +223,7 @@ struct ElasticCells {
       }
       return true;
     }
-    const Coords x(coords, cells, cell);
+    const Coords x(coords, places, cell);
     for (int q = 0; q < points; ++q) {
       const double det = physical_gradients(x, gradient, q, dN);
       if (!(det > 0)) return false;
@@ -234,6 +246,7 @@ ElasticCells<Dim, Nodes, Axisymmetric> kinds_of(const CongruentCells &congruent,
                                                 ElasticCells<Dim, Nodes, Axisymmetric> body)
 {
   body.coords = congruent.coords;
+  body.places = congruent.cells;
   body.cells = congruent.cells;
   body.kind_volume = {};
   return body;
@@ -265,6 +278,7 @@ ElasticCells<Dim, Nodes, Axisymmetric> elastic_cells(const Discretization &d, co
   const mesh::Mesh &mesh = *d.mesh;
   ElasticCells<Dim, Nodes, Axisymmetric> body;
   body.coords = mesh.coords;
+  body.places = mesh.places();
   body.cells = mesh.cells;
   body.block = mesh.block;
   body.value = table.value;
@@ -273,6 +287,7 @@ ElasticCells<Dim, Nodes, Axisymmetric> elastic_cells(const Discretization &d, co
   body.lame = lame_table(d, materials);
   body.projected = projected_dilatation_table(d, materials);
   body.plane_stress = d.kinematics == Kinematics::plane_stress;
+  for (int i = 0; i < Dim; ++i) body.period[i] = mesh.box ? mesh.box->period(i) : 0;
   if (d.congruent.size() == 0) return body;
   if constexpr (!Axisymmetric) {
     const DeviceView<double **[Nodes][Dim]> gradient("rpc::fem::kind_gradient", d.congruent.size(), table.num_points());

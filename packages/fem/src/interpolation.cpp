@@ -206,7 +206,12 @@ std::vector<double> AtPoints::distances() const
   for (const std::vector<double> &nearest : of(*node_coordinates(d_))) {
     const Point &x = points_[distance.size()];
     double square = 0;
-    for (int c = 0; c < d_.dim(); ++c) square += (x[c] - nearest[c]) * (x[c] - nearest[c]);
+    for (int c = 0; c < d_.dim(); ++c) {
+      double beside = x[c] - nearest[c];
+      if (const auto &box = d_.mesh->box; box && box->wraps(c)) // whose last cells end at the first nodes
+        beside = std::max({0., box->lower[c] - x[c], x[c] - box->upper[c]});
+      square += beside * beside;
+    }
     distance.push_back(std::sqrt(square));
   }
   return distance;

@@ -168,7 +168,7 @@ struct RowsInBox {
       if (weight[a] == 0) continue;
       mesh::Index node{};
       for (int d = 0; d < Dim; ++d) node[d] = grid.order(d) * cell[d] + elements.place[part][a][d];
-      each(a, node);
+      each(a, grid.node_of(node));
     }
   }
   KOKKOS_INLINE_FUNCTION void operator()(const LO row, InterpolationRow<Nodes> &result) const
@@ -233,7 +233,8 @@ std::vector<GO> find_others(RowsInBox<Dim, Elements> &rows, const LO num_rows)
 /// Whether both are divisions of one box.
 inline bool divide_one_box(const mesh::Mesh &from, const mesh::Mesh &to)
 {
-  return from.box && to.box && from.box->lower == to.box->lower && from.box->upper == to.box->upper;
+  return from.box && to.box && from.box->lower == to.box->lower && from.box->upper == to.box->upper &&
+         from.box->periodic == to.box->periodic && from.box->unrolled == to.box->unrolled;
 }
 
 /// @return the rows, and the matrix' columns; collective

@@ -47,7 +47,7 @@ DeviceView<double **> boxes(const ShapeFunctions<Dim, Nodes> &shape, const Searc
       "rpc::fem::cell_boxes", device_range(mesh.count), KOKKOS_LAMBDA(const LO c) {
         for (int d = 0; d < Dim; ++d) {
           double x[Nodes], b[Nodes];
-          for (int a = 0; a < Nodes; ++a) x[a] = mesh.coords(mesh.cells(c, a), d);
+          for (int a = 0; a < Nodes; ++a) x[a] = mesh.coords(mesh.places(c, a), d);
           shape.bernstein(x, b);
           double low = b[0], high = b[0];
           for (int a = 1; a < Nodes; ++a) {
@@ -109,7 +109,7 @@ struct Search {
 template <int Dim, int Nodes>
 Search<Dim, Nodes> search_in(const mesh::Mesh &mesh)
 {
-  Search<Dim, Nodes> search{{}, {mesh.coords, mesh.cells, to_device(mesh.cell_id.list()), mesh.num_owned_cells}};
+  Search<Dim, Nodes> search{{}, {mesh.coords, mesh.places(), to_device(mesh.cell_id.list()), mesh.num_owned_cells}};
   search.box = boxes(search.shape, search.cells);
   Bounds mine = Bounds::empty();
   if (search.cells.count > 0) {

@@ -51,10 +51,10 @@ template <int Dim, int Nodes>
 struct CellCoords {
   double x[Nodes][Dim];
 
-  KOKKOS_INLINE_FUNCTION CellCoords(const DeviceView<double **> &coords, const DeviceView<LO **> &cells, const LO cell)
+  KOKKOS_INLINE_FUNCTION CellCoords(const DeviceView<double **> &coords, const DeviceView<LO **> &places, const LO cell)
   {
     for (int a = 0; a < Nodes; ++a)
-      for (int d = 0; d < Dim; ++d) x[a][d] = coords(cells(cell, a), d);
+      for (int d = 0; d < Dim; ++d) x[a][d] = coords(places(cell, a), d);
   }
 };
 

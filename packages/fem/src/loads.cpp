@@ -122,7 +122,7 @@ DeviceView<double *> cell_measure(const Discretization &d, const BasisTable &tab
   const mesh::Mesh &mesh = *d.mesh;
   DeviceView<double *> measure("rpc::fem::cell_measure", std::size_t(mesh.num_cells()) * table.num_points());
   with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    const CellMeasure<dim, nodes> kernel{mesh.coords,  mesh.cells,       table.value, table.gradient,
+    const CellMeasure<dim, nodes> kernel{mesh.coords,  mesh.places(),    table.value, table.gradient,
                                          table.weight, d.axisymmetric(), measure};
     Kokkos::parallel_for("rpc::fem::cell_measure", device_range(mesh.num_cells()), kernel);
   });
@@ -220,7 +220,7 @@ void add_body_force(const Discretization &d, const VectorField &force, const std
   if (is_zero(force, d.dim())) return;
   const mesh::Mesh &mesh = *d.mesh;
   const BasisTable &table = d.reference.cell_load;
-  const auto points = quadrature_points(mesh.coords, mesh.cells, table.value);
+  const auto points = quadrature_points(mesh.coords, mesh.places(), table.value);
   const auto f = evaluate_vector(force, points, parameter, mesh.comm());
   add_load(mesh.cells, d.node_to_cells, table.value, cell_measure(d, table), f, load); // paper (1), (2.5)
 }
@@ -257,7 +257,7 @@ DeviceView<double ***> tractions_on(const Discretization &d, const mesh::Side &s
     if (load.side != side.name) continue;
     const VectorField traction = force_per_area(d, side, load);
     if (is_zero(traction, dim)) continue;
-    const auto t = evaluate_vector(traction, quadrature_points(mesh.coords, side.facets, table.value),
+    const auto t = evaluate_vector(traction, quadrature_points(mesh.coords, side.places(), table.value),
                                    "Traction->" + load.name, mesh.comm());
     Kokkos::parallel_for(
         "rpc::fem::add_tractions", device_range(static_cast<LO>(side.facets.extent(0))), KOKKOS_LAMBDA(const LO f) {
@@ -300,7 +300,7 @@ void add_traction(const Discretization &d, const mesh::Side &side, const VectorF
   if (is_zero(traction, d.dim())) return;
   const mesh::Mesh &mesh = *d.mesh;
   const BasisTable &table = d.reference.facet;
-  const auto points = quadrature_points(mesh.coords, side.facets, table.value);
+  const auto points = quadrature_points(mesh.coords, side.places(), table.value);
   const auto t = evaluate_vector(traction, points, parameter, mesh.comm());
   const auto measure = facet_measure(d, side);
   require_area(max_all(mesh.comm(), largest_of(measure)), side, parameter);

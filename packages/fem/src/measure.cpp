@@ -36,7 +36,7 @@ BodyMeasure body_measure(const Discretization &d)
   for (int c = 0; c < d.dim(); ++c) {
     double low = 0, high = 0;
     Kokkos::parallel_reduce(
-        "rpc::fem::box_around", device_range(d.mesh->num_owned_nodes()),
+        "rpc::fem::box_around", device_range(static_cast<LO>(coords.extent(0))), // images, too
         KOKKOS_LAMBDA(const LO n, double &least, double &most) {
           if (coords(n, c) < least) least = coords(n, c);
           if (coords(n, c) > most) most = coords(n, c);

@@ -74,7 +74,7 @@ NearestMotion nearest_motion(const Discretization &d, const DeviceView<char *> &
   };
   // Orthonormal motions over these unknowns; those that move none of them stay out.
   std::vector<RigidMotion> basis;
-  for (RigidMotion motion : all_motions(dim, d.kinematics)) {
+  for (RigidMotion motion : all_motions(d)) {
     const double before = product(motion, motion);
     for (const RigidMotion &unit : basis) {
       const double part = product(motion, unit);

@@ -70,6 +70,30 @@ Vertices vertices_of(const mesh::Mesh &mesh, const Cells &cells)
   return vertices;
 }
 
+/// Rows of the fine mesh's coordinates that images of vertices have, ascending, and all rows' numbers in the coarse one; -1: none.
+struct VertexPlaces {
+  std::vector<LO> image, row;
+};
+
+/// @param places  of the mesh, on the host
+template <class Places>
+VertexPlaces places_of(const mesh::Mesh &mesh, const Vertices &vertices, const Places &places)
+{
+  VertexPlaces found;
+  found.row = vertices.place;
+  found.row.resize(mesh.coords.extent(0), -1);
+  const auto first_image = static_cast<std::size_t>(mesh.num_local_nodes());
+  for (std::size_t c = 0; c < places.extent(0); ++c)
+    for (int v = 0; v < mesh.element.num_vertices(); ++v)
+      found.row[places(c, v)] = std::max(found.row[places(c, v)], 0);
+  for (std::size_t n = first_image; n < found.row.size(); ++n) {
+    if (found.row[n] < 0) continue;
+    found.row[n] = static_cast<LO>(vertices.node.size() + found.image.size());
+    found.image.push_back(static_cast<LO>(n));
+  }
+  return found;
+}
+
 /// The gids of those that other ranks own; collective.
 std::vector<GO> ghosts_among(const Discretization &d, const Vertices &vertices, const Map &owned)
 {
@@ -111,16 +135,28 @@ OrderOne order_one(const Discretization &d)
   mesh->owned_nodes =
       rcp(new Map(unknown, static_cast<std::size_t>(vertices.num_owned), 0, from.owned_nodes->getComm()));
   mesh->ghosts = ghosts_among(d, vertices, *mesh->owned_nodes);
-  mesh->coords = DeviceView<double **>("rpc::fem::vertex_coords", num_local_vertices, from.dim());
+  const auto places = to_host(from.places());
+  const VertexPlaces vertex_places = places_of(from, vertices, places);
+  const LO num_places = num_local_vertices + static_cast<LO>(vertex_places.image.size());
+  mesh->coords = DeviceView<double **>("rpc::fem::vertex_coords", num_places, from.dim());
   mesh->cells = DeviceView<LO **>("rpc::fem::vertex_cells", cells.extent(0), num_vertices);
   const auto to_coords = Kokkos::create_mirror_view(mesh->coords);
   const auto to_cells = Kokkos::create_mirror_view(mesh->cells);
-  for (LO v = 0; v < num_local_vertices; ++v)
-    for (int k = 0; k < from.dim(); ++k) to_coords(v, k) = coords(vertices.node[v], k);
+  for (LO v = 0; v < num_places; ++v) {
+    const LO row = v < num_local_vertices ? vertices.node[v] : vertex_places.image[v - num_local_vertices];
+    for (int k = 0; k < from.dim(); ++k) to_coords(v, k) = coords(row, k);
+  }
   for (std::size_t c = 0; c < cells.extent(0); ++c)
     for (int v = 0; v < num_vertices; ++v) to_cells(c, v) = vertices.place[cells(c, v)];
   Kokkos::deep_copy(mesh->coords, to_coords);
   Kokkos::deep_copy(mesh->cells, to_cells);
+  if (from.place.extent(0) > 0) {
+    mesh->place = DeviceView<LO **>("rpc::fem::vertex_places", cells.extent(0), num_vertices);
+    const auto to_places = Kokkos::create_mirror_view(mesh->place);
+    for (std::size_t c = 0; c < cells.extent(0); ++c)
+      for (int v = 0; v < num_vertices; ++v) to_places(c, v) = vertex_places.row[places(c, v)];
+    Kokkos::deep_copy(mesh->place, to_places);
+  }
   mesh->block = from.block;
   mesh->blocks = from.blocks;
   mesh->cell_id = from.cell_id;

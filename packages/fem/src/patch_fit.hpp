@@ -241,7 +241,7 @@ struct FitPatch {
     double normal[Terms::size][Terms::size] = {}, c[Terms::size][1] = {};
     for (std::size_t k = node_row(node); k < node_row(node + 1); ++k) {
       const LO cell = node_cell(k);
-      const CellCoords<Dim, Nodes> x(body.coords, body.cells, cell);
+      const CellCoords<Dim, Nodes> x(body.coords, body.places, cell);
       Projection<Dim, Nodes> projection;
       if (!body.project(cell, projection)) continue;
       for (int q = 0; q < static_cast<int>(recovery.extent(0)); ++q) {
@@ -249,7 +249,7 @@ struct FitPatch {
         position(x, recovery, q, at);
         projection.gradients(at, dilatation);
         const double value = body.divergence(u, cell, dilatation);
-        for (int i = 0; i < Dim; ++i) dx[i] = at[i] - body.coords(node, i);
+        for (int i = 0; i < Dim; ++i) dx[i] = to_nearest_image(at[i] - body.coords(node, i), body.period[i]);
         in_frame(inverse, dx, xi);
         Terms::evaluate(xi, term);
         for (int s = 0; s < Terms::size; ++s) {
@@ -277,7 +277,7 @@ struct FitPatch {
   }
   KOKKOS_FUNCTION void step(const LO from, const LO to, double (&dx)[Dim]) const
   {
-    for (int i = 0; i < Dim; ++i) dx[i] = body.coords(to, i) - body.coords(from, i);
+    for (int i = 0; i < Dim; ++i) dx[i] = to_nearest_image(body.coords(to, i) - body.coords(from, i), body.period[i]);
   }
 
   /// Whether cells close all around a vertex: every facet at it is shared by two of them.
@@ -320,6 +320,7 @@ struct AdoptPolynomial {
   DeviceView<LO *> node_cell;         // cells around nodes                    in
   WriteColumns table;                 // (overlap nodes, PatchTable)           inout
   int vertices;                       // per cell
+  Kokkos::Array<double, 3> period;    // see ElasticCells                      in
 
   KOKKOS_FUNCTION void operator()(const LO node) const
   {
@@ -345,9 +346,10 @@ struct AdoptPolynomial {
     for (int i = 0; i < Dim; ++i) {
       const double xa = table(a, Table::centre + i), xb = table(b, Table::centre + i),
                    x = table(node, Table::centre + i);
-      square[0] += (xa - x) * (xa - x);
-      square[1] += (xb - x) * (xb - x);
-      if (first == 0) first = xa - xb;
+      const double to_a = to_nearest_image(xa - x, period[i]), to_b = to_nearest_image(xb - x, period[i]);
+      square[0] += to_a * to_a;
+      square[1] += to_b * to_b;
+      if (first == 0) first = to_nearest_image(xa - xb, period[i]);
     }
     return square[0] == square[1] ? first < 0 : square[0] < square[1];
   }

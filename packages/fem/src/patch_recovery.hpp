@@ -52,7 +52,7 @@ struct Polynomials {
     double L[Dim][Dim], dx[Dim][1], xi[Dim], term[Terms::size], slope[Terms::size][Dim];
     int column = Table::frame;
     for (int i = 0; i < Dim; ++i) {
-      dx[i][0] = x[i] - table(vertex, Table::centre + i);
+      dx[i][0] = to_nearest_image(x[i] - table(vertex, Table::centre + i), body.period[i]);
       for (int j = 0; j <= i; ++j) L[i][j] = table(vertex, column++);
     }
     solve_lower(L, Dim, dx);
@@ -235,7 +235,7 @@ struct RecoveryDifference {
   {
     constexpr int vertices = Fitted::vertices;
     const Body &body = polynomials.body;
-    const CellCoords<Dim, Nodes> coords(body.coords, body.cells, cell);
+    const CellCoords<Dim, Nodes> coords(body.coords, body.places, cell);
     const double lambda = body.lambda(cell), mu = body.mu(cell);
     double sum = 0;
     body.at_points(cell, [&](const int q, const double volume, const typename Body::Gradients &dN,

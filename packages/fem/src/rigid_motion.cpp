@@ -6,6 +6,7 @@
 #include "rpc/core/error.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/fem/surface.hpp"
+#include "rpc/mesh/box.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -265,6 +266,19 @@ std::vector<RigidMotion> all_motions(const int dim, const Kinematics kinematics)
   return units;
 }
 
+std::vector<RigidMotion> all_motions(const Discretization &d)
+{
+  auto motions = all_motions(d.dim(), d.kinematics);
+  const mesh::BoxOptions *const box = d.mesh->box.get();
+  if (!box || !mesh::periodic(*box)) return motions;
+  int mode = d.dim();
+  std::vector<RigidMotion> kept(motions.begin(), motions.begin() + d.dim());
+  for (int i = 0; i < d.dim(); ++i)
+    for (int j = i + 1; j < d.dim(); ++j, ++mode)
+      if (!box->wraps(i) && !box->wraps(j)) kept.push_back(motions[mode]);
+  return kept;
+}
+
 std::vector<std::vector<RigidMotion>> free_motions(const Discretization &d, const Parts &parts,
                                                    const DirichletDofs &dirichlet)
 {
@@ -291,8 +305,7 @@ std::vector<std::vector<RigidMotion>> free_motions(const Discretization &d, cons
   add_rows_of_rigid(d, parts, dirichlet.rigid, rows);
   rows = independent_rows_of_all(mesh.comm(), rows, rigid_tolerance);
   std::vector<std::vector<RigidMotion>> motions;
-  for (const auto &stopped : rows)
-    motions.push_back(null_space(stopped, all_motions(dim, d.kinematics), rigid_tolerance));
+  for (const auto &stopped : rows) motions.push_back(null_space(stopped, all_motions(d), rigid_tolerance));
   return motions;
 }
 

@@ -21,7 +21,7 @@ namespace
 /// on this rank.
 template <int Dim, int Nodes>
 struct FirstBadCell {
-  DeviceView<double **> coords;    // (overlap nodes, Dim)   [m]      in
+  DeviceView<double **> coords;    // (places, Dim)          [m]      in
   DeviceView<LO **> cells;         // (cells, Nodes)                  in
   DeviceView<double ***> gradient; // (points, Nodes, Dim)            in
 
@@ -39,20 +39,20 @@ std::optional<std::string> describe_bad_cell(const Discretization &d)
   const mesh::Mesh &mesh = *d.mesh;
   LO first = 0;
   with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    const FirstBadCell<dim, nodes> kernel{mesh.coords, mesh.cells, d.reference.cell.gradient};
+    const FirstBadCell<dim, nodes> kernel{mesh.coords, mesh.places(), d.reference.cell.gradient};
     Kokkos::parallel_reduce("rpc::fem::first_bad_cell", device_range(mesh.num_owned_cells), kernel,
                             Kokkos::Min<LO>(first));
   });
   if (first >= mesh.num_owned_cells) return std::nullopt;
   const auto coords = to_host(mesh.coords);
-  const auto cells = to_host(mesh.cells);
+  const auto places = to_host(mesh.places());
   const auto block = to_host(mesh.block);
   std::ostringstream message;
   message << "mesh: cell " << mesh.cell_id(first) + 1 << " of block \"" << mesh.blocks[block(first)]
           << "\" is degenerate or inverted (Jacobian determinant <= 0), with vertices at";
   for (int a = 0; a < mesh.element.num_vertices(); ++a)
     for (int c = 0; c < mesh.dim(); ++c)
-      message << (c == 0 ? " (" : ", ") << coords(cells(first, a), c) << (c + 1 == mesh.dim() ? ")" : "");
+      message << (c == 0 ? " (" : ", ") << coords(places(first, a), c) << (c + 1 == mesh.dim() ? ")" : "");
   return message.str();
 }
 

@@ -55,9 +55,12 @@ RCP<const MultiVector> fit(const Discretization &d, const ElasticCells<Dim, Node
   }
   fill_ghost_rows(d, *table);
   {
-    const AdoptPolynomial<Dim, Nodes, Axisymmetric> adopt{mesh.cells, node_to_cells.row, node_to_cells.cell,
+    const AdoptPolynomial<Dim, Nodes, Axisymmetric> adopt{mesh.cells,
+                                                          node_to_cells.row,
+                                                          node_to_cells.cell,
                                                           table->getLocalViewDevice(Tpetra::Access::ReadWrite),
-                                                          mesh.element.num_vertices()};
+                                                          mesh.element.num_vertices(),
+                                                          body.period};
     Kokkos::parallel_for("rpc::fem::adopt_polynomial", nodes, adopt);
     Kokkos::fence();
   }

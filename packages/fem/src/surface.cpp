@@ -14,7 +14,7 @@ namespace
 /// Integration weight of a facet's point: the rule's weight times the area element, times 2 pi r in axisymmetry.
 struct FacetPoints {
   DeviceView<double **> coords;    // (overlap nodes, dim)          [m]  in
-  DeviceView<LO **> facets;        // (facets, nodes)                    in
+  DeviceView<LO **> facets;        // (facets, nodes)                    in, rows of coords
   DeviceView<double **> value;     // (points, nodes)                    in
   DeviceView<double ***> gradient; // (points, nodes, dim - 1)           in
   DeviceView<double *> weight;     // (points)                           in
@@ -40,7 +40,7 @@ struct FacetPoints {
 
 FacetPoints facet_points(const Discretization &d, const mesh::Side &side, const BasisTable &table)
 {
-  return {d.mesh->coords, side.facets, table.value, table.gradient, table.weight, d.axisymmetric()};
+  return {d.mesh->coords, side.places(), table.value, table.gradient, table.weight, d.axisymmetric()};
 }
 
 /// The rule of nodal quadrature: one whose points are the nodes, or that of int N_a where this would not meet a constant pressure: with

@@ -18,6 +18,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 
 namespace rpc::mesh
 {
@@ -25,6 +26,12 @@ namespace
 {
 
 using Teuchos::Array;
+
+/// What "Mesh->Periodic" may be.
+constexpr std::pair<const char *, std::array<bool, 3>> periodic_words[] = {
+    {"none", {false, false, false}}, {"X", {true, false, false}},   {"Y", {false, true, false}},
+    {"Z", {false, false, true}},     {"X, Y", {true, true, false}}, {"X, Z", {true, false, true}},
+    {"Y, Z", {false, true, true}}};
 
 /// A side of a box: its direction, upper or lower end.
 struct BoxSide {
@@ -61,12 +68,13 @@ std::vector<PartFacet> facets_on(const Element &element, const BoxParts &parts, 
 /// Numbers and places of one rank's nodes and cells, for kernels.
 struct Numbering {
   Block owned_nodes, local_nodes, owned_cells;
-  DeviceView<LO *> node_lid; // (local lattice) node at a position of local_nodes
-  DeviceView<Index *> ghost; // (ghost nodes) position
+  Block positions;           // those of nodes and their images
+  DeviceView<LO *> node_lid; // (positions) node, or place of an image, at a position
+  DeviceView<Index *> ghost; // (ghost nodes, then images) position
   DeviceView<Index *> halo;  // (ghost cells) position
   LO num_owned_cells = 0;
 
-  KOKKOS_INLINE_FUNCTION LO lid_of(const Index &node) const { return node_lid(local_nodes.index_of(node)); }
+  KOKKOS_INLINE_FUNCTION LO lid_of(const Index &node) const { return node_lid(positions.index_of(node)); }
   KOKKOS_INLINE_FUNCTION Index node_at(const LO lid) const
   {
     const LO owned = static_cast<LO>(owned_nodes.size());
@@ -85,13 +93,14 @@ DeviceView<Index *> device_positions(const std::vector<Index> &positions, const 
   return to_device(host);
 }
 
-void number_nodes(Numbering &numbering, const LO num_nodes)
+/// @param num_places  of nodes and images
+void number_nodes(Numbering &numbering, const LO num_places)
 {
-  numbering.node_lid = DeviceView<LO *>("rpc::mesh::node_lid", numbering.local_nodes.size());
+  numbering.node_lid = DeviceView<LO *>("rpc::mesh::node_lid", numbering.positions.size());
   const Numbering n = numbering;
   Kokkos::parallel_for(
-      "rpc::mesh::number_box_nodes", device_range(num_nodes),
-      KOKKOS_LAMBDA(const LO lid) { n.node_lid(n.local_nodes.index_of(n.node_at(lid))) = lid; });
+      "rpc::mesh::number_box_nodes", device_range(num_places),
+      KOKKOS_LAMBDA(const LO lid) { n.node_lid(n.positions.index_of(n.node_at(lid))) = lid; });
 }
 
 void fill_coords(const Numbering &n, const BoxOptions &options, const DeviceView<double **> &coords)
@@ -118,7 +127,9 @@ void fill_coords(const Numbering &n, const BoxOptions &options, const DeviceView
       });
 }
 
-void fill_cells(const Numbering &n, const Element &element, const BoxParts &parts, const DeviceView<LO **> &cells)
+/// @param places  where the nodes of cells lie; empty where there are no images
+void fill_cells(const Numbering &n, const Grid &grid, const Element &element, const BoxParts &parts,
+                const DeviceView<LO **> &cells, const DeviceView<LO **> &places)
 {
   const int nodes = element.num_nodes(), dim = element.dim;
   Kokkos::Array<int, 3> order{};
@@ -135,7 +146,8 @@ void fill_cells(const Numbering &n, const Element &element, const BoxParts &part
         for (int a = 0; a < nodes; ++a) {
           Index node{};
           for (int d = 0; d < dim; ++d) node[d] = order[d] * corner[d] + place(cell % num_parts, a, d);
-          cells(cell, a) = n.lid_of(node);
+          cells(cell, a) = n.lid_of(grid.node_of(node));
+          if (places.extent(0) > 0) places(cell, a) = n.lid_of(node);
         }
       });
 }
@@ -172,7 +184,7 @@ Side side_of_box(const BoxSide &box_side, const BoxParts &parts, const Grid &gri
       const auto owns_node = [&, &place = parts[part]](const int a) {
         Index node{};
         for (int k = 0; k < element.dim; ++k) node[k] = element.order_along(k) * at[k] + place[a][k];
-        return numbering.owned_nodes.contains(node);
+        return numbering.owned_nodes.contains(grid.node_of(node));
       };
       const auto &nodes = element.facets()[facet];
       if (!owned && std::none_of(nodes.begin(), nodes.end(), owns_node)) continue;
@@ -241,6 +253,11 @@ void add_box_parameters(Teuchos::ParameterList &valid)
       valid, "Element", {"Q1", "Q2", "P1", "P2"},
       "Element of the box: `Q1`, `Q2` (quadrilaterals, in 3D hexahedra), `P1`, `P2` (two triangles to a cell, in 3D "
       "six tetrahedra).");
+  std::vector<std::string> words;
+  for (const auto &[word, directions] : periodic_words) words.emplace_back(word);
+  set_words(valid, "Periodic", words,
+            "Directions in which the box repeats itself: `X` makes the nodes of the right side those of the left one, "
+            "`Y` joins bottom and top, `Z` back and front. `none`: it ends at its sides.");
 }
 
 BoxOptions box_options(const Teuchos::ParameterList &list)
@@ -287,6 +304,25 @@ BoxOptions box_options(const Teuchos::ParameterList &list)
                     << spacing << " and " << farthest << " [m] in direction " << d + 1);
     nodes *= double(options.cells[d]) * options.element.order + 1;
   }
+  const auto &repeats = list.get<std::string>("Periodic");
+  for (const auto &[word, directions] : periodic_words)
+    if (repeats == word) options.periodic = directions;
+  RPC_REQUIRE(repeats == "none" || periodic(options),
+              "deck: \"Mesh->Periodic\" must be one of none, X, Y, Z, \"X, Y\", \"X, Z\", \"Y, Z\", got \"" << repeats
+                                                                                                            << "\"");
+  constexpr int fewest = 3; // a node must not be the neighbour of another one on both sides
+  for (std::size_t d = 0; d < 3; ++d) {
+    if (!options.periodic[d]) continue;
+    const char name = "XYZ"[d];
+    RPC_REQUIRE(d < dim, "deck: \"Mesh->Periodic\" names " << name << ", which a box in the plane does not have, got \""
+                                                           << repeats << "\"");
+    RPC_REQUIRE(options.cells[d] >= fewest,
+                "deck: \"Mesh->Cells\" must be >= " << fewest << " in direction " << d + 1
+                                                    << ", in which the box is periodic, got " << options.cells[d]);
+  }
+  RPC_REQUIRE(dim == 3 || !(options.periodic[0] && options.periodic[1]),
+              "deck: \"Mesh->Periodic\" must leave the box sides, got \""
+                  << repeats << "\" in the plane. Write the direction along the contact side alone");
   const double most = std::numeric_limits<LO>::max() / 3.;
   RPC_REQUIRE(nodes <= most, "deck: \"Mesh->Cells\" make " << nodes << " nodes; at most " << most << " are supported");
   return options;
@@ -315,12 +351,17 @@ Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
                         << " lower and upper coordinates and numbers of cells, got " << options.lower.size() << ", "
                         << options.upper.size() << " and " << options.cells.size()
                         << ". Write 2 numbers for each, in space 3, with decimal points and commas between them");
+  for (std::size_t d = 0; d < dim; ++d)
+    RPC_REQUIRE(!options.wraps(static_cast<int>(d)) || options.cells[d] >= 2,
+                "mesh: a periodic box needs two cells at least in the directions in which it repeats itself, got "
+                    << options.cells[d] << " in direction " << d + 1);
   const Grid grid(options, comm->getSize());
   const int rank = comm->getRank();
   Numbering numbering;
   numbering.owned_nodes = grid.owned_nodes(rank);
   require_memory(options, numbering.owned_nodes.size(), grid.num_nodes_total(), *comm);
   numbering.local_nodes = grid.local_nodes(rank);
+  numbering.positions = grid.nodes_of(grid.local_cells(rank));
   numbering.owned_cells = grid.owned_cells(rank);
   numbering.num_owned_cells = static_cast<LO>(numbering.owned_cells.size());
   const Block local_cells = grid.local_cells(rank);
@@ -336,15 +377,18 @@ Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
 
   const LO num_owned = static_cast<LO>(numbering.owned_nodes.size());
   const LO num_nodes = num_owned + static_cast<LO>(ghosts.size());
+  const std::vector<Index> images = shell(numbering.positions, numbering.local_nodes);
+  const LO num_places = num_nodes + static_cast<LO>(images.size());
   Mesh mesh;
   std::vector<Index> ghost_positions;
   for (const Ghost &ghost : ghosts) {
     mesh.ghosts.push_back(ghost.gid);
     ghost_positions.push_back(ghost.at);
   }
+  ghost_positions.insert(ghost_positions.end(), images.begin(), images.end());
   numbering.ghost = device_positions(ghost_positions, "rpc::mesh::ghost_nodes");
   numbering.halo = device_positions(halo, "rpc::mesh::halo_cells");
-  number_nodes(numbering, num_nodes);
+  number_nodes(numbering, num_places);
 
   mesh.element = options.element;
   mesh.box = std::make_shared<const BoxOptions>(options);
@@ -353,26 +397,28 @@ Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
   const BoxParts parts = box_parts(options.element);
   const LO num_parts = static_cast<LO>(parts.size());
   mesh.num_owned_cells = num_parts * numbering.num_owned_cells;
-  mesh.coords = DeviceView<double **>("rpc::mesh::coords", num_nodes, mesh.dim());
+  mesh.coords = DeviceView<double **>("rpc::mesh::coords", num_places, mesh.dim());
   const std::size_t num_cells = num_parts * (numbering.num_owned_cells + halo.size());
   mesh.cells = DeviceView<LO **>("rpc::mesh::cells", num_cells, mesh.element.num_nodes());
+  if (!images.empty()) mesh.place = DeviceView<LO **>("rpc::mesh::places", num_cells, mesh.element.num_nodes());
   mesh.blocks = {"body"};
   mesh.block = DeviceView<int *>("rpc::mesh::block", num_cells);
   fill_coords(numbering, options, mesh.coords);
-  fill_cells(numbering, mesh.element, parts, mesh.cells);
+  fill_cells(numbering, grid, mesh.element, parts, mesh.cells, mesh.place);
 
   Index nodes{1, 1, 1}, cells{1, 1, 1};
   for (int d = 0; d < mesh.dim(); ++d) {
     cells[d] = options.cells[d];
-    nodes[d] = GO(options.cells[d]) * options.element.order_along(d) + 1;
+    nodes[d] = GO(options.cells[d]) * options.element.order_along(d) + (options.wraps(d) ? 0 : 1);
   }
   mesh.node_id = Ids(numbering.owned_nodes, nodes, 1);
   mesh.cell_id = Ids(numbering.owned_cells, cells, num_parts);
 
   for (const BoxSide &box_side : box_sides)
-    if (box_side.direction < mesh.dim())
+    if (box_side.direction < mesh.dim() && !options.wraps(box_side.direction))
       mesh.sides.push_back(side_of_box(box_side, parts, grid, numbering, halo, local_cells, mesh));
-  mesh.points = corners_of_box(numbering, {nodes[0] - 1, nodes[1] - 1, nodes[2] - 1}, mesh.dim());
+  if (options.unrolled || !periodic(options))
+    mesh.points = corners_of_box(numbering, {nodes[0] - 1, nodes[1] - 1, nodes[2] - 1}, mesh.dim());
   Kokkos::fence();
   return mesh;
 }

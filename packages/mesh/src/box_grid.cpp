@@ -17,7 +17,10 @@ Grid::Grid(const BoxOptions &options, const int num_ranks) : Grid(num_ranks, opt
   RPC_REQUIRE_CODE(
       divided_, ExitCode::bad_mesh,
       "box mesh: " << cells_[0] << " x " << cells_[1] << (dim_ == 3 ? " x " + std::to_string(cells_[2]) : "")
-                   << " cells cannot be divided among " << num_blocks_ << " ranks. Use fewer ranks or more cells.");
+                   << " cells cannot be divided among " << num_blocks_ << " ranks"
+                   << (whole_[0] || whole_[1] || whole_[2] ? ", which do not share directions in which it is periodic"
+                                                           : "")
+                   << ". Use fewer ranks or more cells.");
 }
 
 bool Grid::can_divide(const BoxOptions &options)
@@ -31,6 +34,8 @@ Grid::Grid(const int num_ranks, const BoxOptions &options)
   for (int d = 0; d < dim_; ++d) {
     order_[d] = options.element.order_along(d);
     cells_[d] = options.cells[d];
+    whole_[d] = options.periodic[d];
+    wraps_[d] = options.wraps(d);
   }
   // The shortest direction runs fastest: least bandwidth, and blocks along the longest one share short borders. Equal ones keep
   // their order.
@@ -47,6 +52,9 @@ bool Grid::choose_blocks()
       const int z = num_blocks_ / x / y;
       if (x * y * z != num_blocks_ || x > cells_[0] || y > cells_[1] || z > cells_[2]) continue;
       const std::array<int, 3> blocks{x, y, z};
+      bool cuts = false;
+      for (int d = 0; d < 3; ++d) cuts = cuts || (whole_[d] && blocks[d] > 1);
+      if (cuts) continue;
       double shared = 0; // faces between blocks
       for (int d = 0; d < 3; ++d) shared += (blocks[d] - 1) * (double(num_cells_total()) / cells_[d]);
       if (shared >= least) continue;

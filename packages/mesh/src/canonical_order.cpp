@@ -177,9 +177,13 @@ HostView<GO **> owned_facets(const Mesh &mesh, const Side &side, const HostView<
 {
   const auto nodes = to_host(side.facets);
   const auto cell = to_host(side.cell);
+  const auto place = to_host(side.places());
   std::vector<LO> owned;
-  for (LO f = 0; f < static_cast<LO>(cell.extent(0)); ++f)
-    if (cell(f) < mesh.num_owned_cells) owned.push_back(f);
+  for (LO f = 0; f < static_cast<LO>(cell.extent(0)); ++f) {
+    bool ends_in_image = false;
+    for (std::size_t a = 0; a < place.extent(1); ++a) ends_in_image = ends_in_image || place(f, a) != nodes(f, a);
+    if (cell(f) < mesh.num_owned_cells && !ends_in_image) owned.push_back(f);
+  }
   HostView<GO **> facets("rpc::mesh::owned_facets", owned.size(), mesh.element.num_facet_nodes());
   for (std::size_t f = 0; f < owned.size(); ++f)
     for (std::size_t a = 0; a < facets.extent(1); ++a) facets(f, a) = overlap_ids(nodes(owned[f], a));

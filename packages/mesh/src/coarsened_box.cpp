@@ -15,12 +15,23 @@ namespace
 
 using Directions = std::array<bool, 3>;
 
-/// The least node distance of the directions with more than one interval between nodes; infinite where there is none.
-double shortest_distance(const BoxOptions &options)
+bool has_more_intervals(const BoxOptions &options, const int d)
+{
+  return options.intervals(d) > 1;
+}
+/// A node of a periodic box must not be there twice in a cell.
+bool can_be_coarsened(const BoxOptions &options, const int d)
+{
+  return has_more_intervals(options, d) &&
+         (!options.periodic[d] || options.element.order_along(d) == 2 || options.cells[d] >= 4);
+}
+
+/// The least node distance of some directions; infinite where there is none.
+double shortest_distance(const BoxOptions &options, bool (*const counts)(const BoxOptions &, int))
 {
   double shortest = std::numeric_limits<double>::infinity();
   for (int d = 0; d < options.element.dim; ++d)
-    if (options.intervals(d) > 1) shortest = std::min(shortest, options.node_distance(d));
+    if (counts(options, d)) shortest = std::min(shortest, options.node_distance(d));
   return shortest;
 }
 
@@ -61,13 +72,13 @@ double stretch(const BoxOptions &options)
 std::optional<BoxOptions> coarsened(const BoxOptions &options)
 {
   const int dim = options.element.dim;
-  const double shortest = shortest_distance(options);
+  const double shortest = shortest_distance(options, can_be_coarsened);
   if (!std::isfinite(shortest)) return std::nullopt;
   BoxOptions fine = options;
   Directions closest{}, to_one{};
   bool all = true;
   for (int d = 0; d < dim; ++d) {
-    closest[d] = options.intervals(d) > 1 && options.node_distance(d) <= coarsening_rules.equally_long * shortest;
+    closest[d] = can_be_coarsened(options, d) && options.node_distance(d) <= coarsening_rules.equally_long * shortest;
     all = all && (closest[d] || options.intervals(d) == 1);
   }
   if (options.element.shape == Shape::simplex && options.element.order == 2) {
@@ -86,7 +97,7 @@ std::optional<BoxOptions> coarsened(const BoxOptions &options)
 
 std::optional<int> thin_direction(const BoxOptions &options)
 {
-  const double shortest = shortest_distance(options);
+  const double shortest = shortest_distance(options, has_more_intervals);
   std::optional<int> thinnest;
   const auto thickness = [&options](const int d) { return options.upper[d] - options.lower[d]; };
   for (int d = 0; d < options.element.dim; ++d)

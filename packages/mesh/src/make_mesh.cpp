@@ -295,7 +295,8 @@ std::optional<MeshOptions> coarser(const MeshOptions &options, const double fact
               "mesh: the factor on the size of cells must be >= 1 and finite for a coarser mesh, got " << factor);
   MeshOptions result = options;
   if (auto *const box = std::get_if<BoxOptions>(&result)) {
-    for (int &cells : box->cells) cells = std::max(1, static_cast<int>(std::lround(cells / factor)));
+    for (std::size_t d = 0; d < box->cells.size(); ++d)
+      box->cells[d] = std::max(box->periodic[d] ? 2 : 1, static_cast<int>(std::lround(box->cells[d] / factor)));
     return result;
   }
   auto &gmsh = std::get<GmshOptions>(result);

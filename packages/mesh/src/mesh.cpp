@@ -4,6 +4,7 @@
 #include "rpc/core/error.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/core/remedies.hpp"
+#include "rpc/mesh/box.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -70,6 +71,7 @@ std::string side_remedy(const std::string &user, const std::string &name, const 
 /// What to do where a file has no such side: a box has its own.
 std::string remedy_for_sides(const Mesh &mesh)
 {
+  if (mesh.box && periodic(*mesh.box)) return "; \"Mesh->Periodic\" joins the others, which are no sides then";
   return mesh.box ? "" : "; \"Mesh->Sides\" chooses others by place or number";
 }
 
@@ -138,6 +140,14 @@ Side make_side(const std::string &name, const Mesh &mesh, const HostView<LO *> &
       "rpc::mesh::side_facets", device_range(static_cast<LO>(cell.extent(0))), KOKKOS_LAMBDA(const LO f) {
         for (int a = 0; a < num_nodes; ++a) nodes(f, a) = cells(of_cell(f), local(of_ordinal(f), a));
       });
+  if (mesh.place.extent(0) > 0) {
+    side.place = DeviceView<LO **>("rpc::mesh::side_places", cell.extent(0), num_nodes);
+    const auto place_in_cell = mesh.place, place = side.place;
+    Kokkos::parallel_for(
+        "rpc::mesh::side_places", device_range(static_cast<LO>(cell.extent(0))), KOKKOS_LAMBDA(const LO f) {
+          for (int a = 0; a < num_nodes; ++a) place(f, a) = place_in_cell(of_cell(f), local(of_ordinal(f), a));
+        });
+  }
   Kokkos::fence();
   return side;
 }
@@ -149,7 +159,7 @@ double diameter(const Mesh &mesh)
   for (int d = 0; d < mesh.dim(); ++d) {
     double low = 0, high = 0;
     Kokkos::parallel_reduce(
-        "rpc::mesh::extent", device_range(mesh.num_local_nodes()),
+        "rpc::mesh::extent", device_range(static_cast<LO>(coords.extent(0))), // images, too
         KOKKOS_LAMBDA(const LO n, double &least, double &most) {
           if (coords(n, d) < least) least = coords(n, d);
           if (coords(n, d) > most) most = coords(n, d);

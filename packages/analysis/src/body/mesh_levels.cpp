@@ -113,6 +113,7 @@ solver::Body body_of(const fem::Discretization &d)
   const mesh::Mesh &mesh = *d.mesh;
   if (!mesh.box) return body;
   body.is_thin = mesh::thin_direction(*mesh.box).has_value();
+  if (mesh::periodic(*mesh.box)) return body; // its matrix has no band
   const int order = mesh.element.order;
   std::vector<double> nodes; // along the axes, from that with fewest on
   for (const int cells : mesh.box->cells) nodes.push_back(order * static_cast<double>(cells) + 1);

@@ -54,6 +54,8 @@ std::vector<RigidMotion> null_space(const std::vector<RigidMotion> &rows, const 
 
 /// Orthonormal basis of all motions: of an axisymmetric body the one along its axis, all others strain it.
 std::vector<RigidMotion> all_motions(int dim, Kinematics kinematics = Kinematics::plane_strain);
+/// The same of a body. A periodic box cannot turn in a plane with a direction in which it repeats itself.
+std::vector<RigidMotion> all_motions(const Discretization &d);
 
 /// Below this a row of size 1 is rounding: a part that is held on 1e-8 of its length counts as hinged.
 constexpr double rigid_tolerance = 1e-8;

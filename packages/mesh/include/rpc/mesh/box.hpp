@@ -4,6 +4,7 @@
 #include "rpc/mesh/mesh.hpp"
 
 #include <Teuchos_ParameterList.hpp>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,7 +22,15 @@ struct BoxOptions {
   std::vector<double> last = {};
   /// Blocks that it is divided into, on as many of the ranks; the other ranks have none of it. 0: a block on each rank.
   int blocks = 0;
+  /// Directions in which it repeats itself: nodes of the upper side are those of the lower one. Ranks do not divide them.
+  std::array<bool, 3> periodic = {};
+  /// Whether nodes of such upper sides are nodes of their own all the same, as files want it.
+  bool unrolled = false;
 
+  /// Whether the upper side has the nodes of the lower one.
+  bool wraps(const int direction) const { return periodic[direction] && !unrolled; }
+  /// 0 where there is none [m].
+  double period(const int direction) const { return wraps(direction) ? upper[direction] - lower[direction] : 0; }
   double last_in(const int direction) const { return last.empty() ? 1 : last[direction]; }
   /// Of all cells but the last one [m].
   double cell_length(const int direction) const
@@ -45,8 +54,14 @@ BoxOptions box_options(const Teuchos::ParameterList &list);
 /// keep what they have, so that anisotropic cells become square ones first. Where that makes a box thin (thin_direction()), but so it is too with only the
 /// directions coarsened that come down to one interval between nodes, only they are. Functions of Q1 and Q2 boxes are among those of the finer one.
 /// P2 becomes P1 where node distances are alike, else Q2 with the same nodes takes its place. None where no direction has more
-/// than one interval.
+/// than one interval. A direction in which the box is periodic keeps two cells at least.
 std::optional<BoxOptions> coarsened(const BoxOptions &options);
+
+/// Whether it repeats itself in some direction.
+inline bool periodic(const BoxOptions &options)
+{
+  return options.periodic[0] || options.periodic[1] || options.periodic[2];
+}
 
 /// The longest node distance over the shortest one.
 double stretch(const BoxOptions &options);
@@ -66,7 +81,8 @@ std::optional<std::string> memory_refusal(GO nodes, double bytes, double limit, 
 /// Makes this rank's part of a box; no communication of mesh data, and no rank holds the whole.
 ///
 /// P1 and P2 cut each cell of the grid into two triangles, or six tetrahedra. Ranks form a grid of blocks chosen for the least number of shared cell faces. Sides are named left, right (x),
-/// bottom, top (y), and in 3D back, front (z), corners after their sides, "left bottom" or "left bottom back". Node ids run over the lattice, x fastest. Collective on comm.
+/// bottom, top (y), and in 3D back, front (z), corners after their sides, "left bottom" or "left bottom back". Node ids run over the lattice, x fastest.
+/// Sides and corners in directions in which the box is periodic are none. Collective on comm.
 /// @throws rpc::Error (bad_mesh) if there are fewer cells than ranks in every direction, (bad_input) if the mesh cannot fit in memory
 Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm);
 

@@ -47,8 +47,14 @@ public:
     const int number = block_from(rank);
     return rank_of(number) == rank ? nodes_of_block(number) : empty_block();
   }
-  Block local_nodes(const int rank) const { return nodes_of(local_cells(rank)); }
-  /// All nodes of a block of cells.
+  Block local_nodes(const int rank) const
+  {
+    Block block = nodes_of(local_cells(rank));
+    for (int d = 0; d < dim_; ++d)
+      if (wraps_[d] && block.end[d] > 0) --block.end[d];
+    return block;
+  }
+  /// All nodes of a block of cells; where the box is periodic with the images of the first ones.
   Block nodes_of(Block block) const
   {
     for (int d = 0; d < dim_ && block.end[d] > 0; ++d) {
@@ -81,6 +87,14 @@ public:
   GO num_cells_total() const { return GO(cells_[0]) * cells_[1] * cells_[2]; }
   KOKKOS_INLINE_FUNCTION int num_cells(const int direction) const { return cells_[direction]; }
   KOKKOS_INLINE_FUNCTION int order(const int direction) const { return order_[direction]; }
+  KOKKOS_INLINE_FUNCTION bool wraps(const int direction) const { return wraps_[direction]; }
+  /// The node of which a position of the lattice may be an image.
+  KOKKOS_INLINE_FUNCTION Index node_of(Index position) const
+  {
+    for (int d = 0; d < dim_; ++d)
+      if (wraps_[d] && position[d] == GO(order_[d]) * cells_[d]) position[d] = 0;
+    return position;
+  }
 
 private:
   KOKKOS_INLINE_FUNCTION Block empty_block() const
@@ -122,7 +136,7 @@ private:
   KOKKOS_INLINE_FUNCTION GO first_cell(const int d, const int b) const { return GO(cells_[d]) * b / blocks_[d]; }
   KOKKOS_INLINE_FUNCTION GO first_node(const int d, const int b) const
   {
-    return b == 0 ? 0 : (d < dim_ ? order_[d] * first_cell(d, b) + 1 : 1);
+    return b == 0 ? 0 : (d < dim_ ? order_[d] * first_cell(d, b) + (wraps_[d] ? 0 : 1) : 1);
   }
   KOKKOS_INLINE_FUNCTION GO width(const int d, const int b) const { return first_node(d, b + 1) - first_node(d, b); }
   KOKKOS_INLINE_FUNCTION GO num_nodes(const int d) const { return first_node(d, blocks_[d]); }
@@ -132,6 +146,7 @@ private:
 
   int dim_, num_ranks_, num_blocks_;
   bool divided_ = false;
+  Kokkos::Array<bool, 3> whole_{{false, false, false}}, wraps_{{false, false, false}}; // not divided, periodic
   Kokkos::Array<int, 3> order_{{1, 1, 1}}, cells_{{1, 1, 1}}, axes_{{0, 1, 2}}, blocks_{{1, 1, 1}};
 };
 

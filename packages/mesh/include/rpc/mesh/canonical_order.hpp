@@ -61,7 +61,7 @@ private:
 HostView<GO *> overlap_node_ids(const Mesh &mesh);
 
 /// Facets of a side whose cell this rank owns, as rank-independent node ids: (facets, facet nodes).
-/// Over all ranks each facet of the side appears once.
+/// Over all ranks each facet of the side appears once, but for those of a periodic box that end in images of nodes.
 /// @param overlap_ids  see overlap_node_ids()
 HostView<GO **> owned_facets(const Mesh &mesh, const Side &side, const HostView<GO *> &overlap_ids);
 

@@ -22,8 +22,12 @@ struct Side {
   std::string name;
   DeviceView<LO **>
       facets; ///< (facets, facet nodes), overlap node lids; order gives the outward normal, see Element::facets
-  DeviceView<LO *> cell;     ///< (facets) local cell that the facet belongs to
-  DeviceView<int *> ordinal; ///< (facets) which facet of that cell
+  DeviceView<LO *> cell;        ///< (facets) local cell that the facet belongs to
+  DeviceView<int *> ordinal;    ///< (facets) which facet of that cell
+  DeviceView<LO **> place = {}; ///< where nodes of facets lie, see Mesh::place
+
+  /// (facets, facet nodes) Rows of Mesh::coords.
+  const DeviceView<LO **> &places() const { return place.extent(0) > 0 ? place : facets; }
 };
 
 /// Named nodes that are no side: a corner of a box, physical points of gmsh.
@@ -55,12 +59,16 @@ struct Parents {
 /// communication; the cells that it owns itself (each cell has one owner) come first. Overlap node lids run over the
 /// owned nodes first, so that an owned node has one lid in both maps. Node gids are consecutive on each rank; `node_id`
 /// and `cell_id` number the mesh independently of the number of ranks, 0-based; output is ordered by them.
+///
+/// In a periodic box a node of a lower side is also that of the upper side. Such a node has a place more, its image on the upper side, and
+/// cells there lie between images. Kernels read coordinates of cells and facets at places(), all else at nodes.
 struct Mesh {
   Element element;
   RCP<const Map> owned_nodes;   ///< one-to-one
   std::vector<GO> ghosts;       ///< gids of the overlap nodes that other ranks own, in the order of their lids
-  DeviceView<double **> coords; ///< (overlap nodes, dim) [m]
+  DeviceView<double **> coords; ///< (overlap nodes, in a periodic box then images of nodes; dim) [m]
   DeviceView<LO **> cells;      ///< (local cells, nodes per cell) overlap node lids
+  DeviceView<LO **> place = {}; ///< (local cells, nodes per cell) rows of coords; empty: where the nodes themselves lie
   DeviceView<int *> block;      ///< (local cells) index into blocks
   Ids node_id;                  ///< (owned nodes)
   Ids cell_id;                  ///< (owned cells); over the whole mesh they run block by block
@@ -75,6 +83,8 @@ struct Mesh {
   std::shared_ptr<const Parents> parents; ///< null if it has no coarser one
 
   int dim() const { return element.dim; }
+  /// (local cells, nodes per cell) Rows of coords.
+  const DeviceView<LO **> &places() const { return place.extent(0) > 0 ? place : cells; }
   LO num_owned_nodes() const { return num_local(*owned_nodes); }
   LO num_local_nodes() const { return num_owned_nodes() + static_cast<LO>(ghosts.size()); }
   /// Of an overlap node. Owned ones have consecutive gids.
