@@ -5,6 +5,7 @@
 #include "division.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parallel.hpp"
+#include "sorted_lists.hpp"
 
 #include <algorithm>
 #include <array>
@@ -85,25 +86,34 @@ Part part_of(const MeshData &whole, const Division &division, const int rank)
   std::vector<int> cell_lid(whole.num_cells(), -1);
   int num_cells = 0;
   for (const Lists *cells : {&division.cells, &division.halo}) {
-    std::vector<std::pair<std::array<int, 4>, int>>
-        by_node; // lowest node lid, others', cell: in the order of the nodes
-    for (const int *cell = cells->first(rank); cell != cells->last(rank); ++cell) {
-      int lowest = lid_of(*nodes_of(*cell));
-      for (int a = 1; a < width; ++a) lowest = std::min(lowest, lid_of(nodes_of(*cell)[a]));
-      std::array<int, 4> lids{lowest, 0, 0, 0};
-      if (division.sorts_cells) {
-        lids.fill(std::numeric_limits<int>::max());
-        for (int v = 0; v < num_sorted; ++v) lids[v] = lid_of(nodes_of(*cell)[v]);
-        std::sort(lids.begin(), lids.end());
-      }
-      by_node.emplace_back(lids, *cell);
+    const int *const first = cells->first(rank);
+    std::vector<int> lowest; // node lid of each
+    lowest.reserve(cells->size_of(rank));
+    for (const int *cell = first; cell != cells->last(rank); ++cell) {
+      int lid = lid_of(*nodes_of(*cell));
+      for (int a = 1; a < width; ++a) lid = std::min(lid, lid_of(nodes_of(*cell)[a]));
+      lowest.push_back(lid);
     }
-    std::sort(by_node.begin(), by_node.end());
-    for (const auto &[lids, cell] : by_node) {
-      cell_lid[cell] = num_cells++;
-      (cells == &division.cells ? part.cell_id : part.halo_id).push_back(cell);
-      part.mesh.block.push_back(whole.block[cell]);
-      for (int a = 0; a < width; ++a) part.mesh.cells.push_back(lid_of(nodes_of(cell)[a]));
+    const Lists in_order = sorted_into_lists(lowest, static_cast<int>(part.gid.size()));
+    std::vector<std::pair<std::array<int, 4>, int>> same; // others' lids, cell: with the same lowest node
+    for (int lid = 0; lid < in_order.size(); ++lid) {
+      same.clear();
+      for (const int *k = in_order.first(lid); k != in_order.last(lid); ++k) {
+        std::array<int, 4> lids{};
+        if (division.sorts_cells) {
+          lids.fill(std::numeric_limits<int>::max());
+          for (int v = 0; v < num_sorted; ++v) lids[v] = lid_of(nodes_of(first[*k])[v]);
+          std::sort(lids.begin(), lids.end());
+        }
+        same.emplace_back(lids, first[*k]);
+      }
+      if (division.sorts_cells) std::sort(same.begin(), same.end());
+      for (const auto &[lids, cell] : same) {
+        cell_lid[cell] = num_cells++;
+        (cells == &division.cells ? part.cell_id : part.halo_id).push_back(cell);
+        part.mesh.block.push_back(whole.block[cell]);
+        for (int a = 0; a < width; ++a) part.mesh.cells.push_back(lid_of(nodes_of(cell)[a]));
+      }
     }
   }
 
@@ -130,6 +140,10 @@ Part part_of(const MeshData &whole, const Division &division, const int rank)
     std::sort(mine.node.begin(), mine.node.end());
     part.mesh.points.push_back(mine);
   }
+  if (!division.node_id.empty())
+    for (int &node : part.node_id) node = division.node_id[node];
+  if (!division.cell_id.empty())
+    for (int &cell : part.cell_id) cell = division.cell_id[cell];
   return part;
 }
 

@@ -13,11 +13,12 @@ namespace rpc::mesh
 
 /// The rank of each node and each cell of a whole mesh.
 struct Division {
-  std::vector<int> node_owner; // (nodes) rank
-  std::vector<int> gid;        // (nodes)
-  Lists nodes;                 // of each rank, by gid
-  Lists cells;                 // of each rank
-  Lists halo;                  // of each rank: cells of others that touch its nodes
+  std::vector<int> node_owner;       // (nodes) rank
+  std::vector<int> gid;              // (nodes)
+  Lists nodes;                       // of each rank, by gid
+  Lists cells;                       // of each rank
+  Lists halo;                        // of each rank: cells of others that touch its nodes
+  std::vector<int> node_id, cell_id; // (nodes), (cells) the numbers that they keep in files; empty: those here
   bool sorts_cells =
       false; // those with the same lowest node by their other vertices: cells around alike nodes are alike in order
 };

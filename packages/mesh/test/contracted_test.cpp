@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <random>
 
 namespace contracted_test
@@ -14,6 +15,7 @@ namespace contracted_test
 namespace
 {
 
+using rpc::LO;
 using rpc::mesh::contracted;
 using rpc::mesh::distribute_with_contracted;
 using rpc::mesh::Element;
@@ -190,6 +192,83 @@ TEST(Contracted, OtherMeshesHaveNoCoarserOnes)
   MeshData middles = block_with_sides(p2, {8, 8, 1});                 // a middle node has a name
   middles.points = {{"middle", {middles.cells[5]}}};
   EXPECT_FALSE(contracted(middles));
+}
+
+/// The same mesh with its nodes and cells in no order.
+MeshData shuffled(const MeshData &mesh)
+{
+  std::mt19937 random(3);
+  const int dim = mesh.element.dim, width = mesh.element.num_nodes();
+  std::vector<int> node(mesh.num_nodes()), cell(mesh.num_cells()); // where each goes
+  for (auto *const to : {&node, &cell}) {
+    std::iota(to->begin(), to->end(), 0);
+    std::shuffle(to->begin(), to->end(), random);
+  }
+  MeshData result = mesh;
+  for (int n = 0; n < mesh.num_nodes(); ++n)
+    std::copy_n(&mesh.coords[std::size_t(dim) * n], dim, &result.coords[std::size_t(dim) * node[n]]);
+  for (int c = 0; c < mesh.num_cells(); ++c) {
+    for (int a = 0; a < width; ++a)
+      result.cells[std::size_t(width) * cell[c] + a] = node[mesh.cells[std::size_t(width) * c + a]];
+    result.block[cell[c]] = mesh.block[c];
+  }
+  for (auto &side : result.sides)
+    for (int &c : side.cell) c = cell[c];
+  for (auto &points : result.points) {
+    for (int &n : points.node) n = node[n];
+    std::sort(points.node.begin(), points.node.end());
+  }
+  return result;
+}
+
+/// Distances between numbers of nodes that share a cell, on one rank: what a product with a matrix jumps over.
+double mean_jump(const Mesh &mesh)
+{
+  const auto cells = rpc::to_host(mesh.cells);
+  double sum = 0;
+  for (std::size_t c = 0; c < cells.extent(0); ++c)
+    for (std::size_t a = 1; a < cells.extent(1); ++a) sum += std::abs(cells(c, a) - cells(c, 0));
+  return sum / static_cast<double>(cells.extent(0) * (cells.extent(1) - 1));
+}
+
+TEST(Contracted, FilesInNoOrderKeepTheirNumbers)
+{
+  for (const Element &element : {p1, p2, p1_in_space, p2_in_space})
+    for (const bool lattice : {true, false}) {
+      const std::array<int, 3> cells = element.dim == 3 ? std::array<int, 3>{12, 9, 8} : std::array<int, 3>{40, 24, 1};
+      MeshData whole = block_with_sides(element, cells);
+      if (!lattice)
+        whole = moved(whole, [](const Point &x) { return Point{x[0] + 0.1 * x[1], x[1], x[2] - 0.1 * x[0]}; });
+      whole.points = {{"some", {3, 5, 8}}};
+      if (element.order == 2) whole.points.clear();
+      const auto in_order = distribute_with_contracted(whole, alone());
+      const MeshData file = shuffled(whole);
+      const auto mesh = distribute_with_contracted(file, alone());
+      ASSERT_TRUE(mesh->parents) << element.name();
+      const auto x = rpc::to_host(mesh->coords);
+      for (LO n = 0; n < mesh->num_owned_nodes(); ++n)
+        for (int d = 0; d < element.dim; ++d) ASSERT_EQ(x(n, d), point_of(file, static_cast<int>(mesh->node_id(n)))[d]);
+      const auto nodes = rpc::to_host(mesh->cells);
+      const auto block = rpc::to_host(mesh->block);
+      const int width = element.num_nodes();
+      for (LO c = 0; c < mesh->num_cells(); ++c) {
+        const int id = static_cast<int>(mesh->cell_id(c));
+        ASSERT_EQ(block(c), file.block[id]);
+        for (int a = 0; a < width; ++a) ASSERT_EQ(mesh->node_id(nodes(c, a)), file.cells[std::size_t(width) * id + a]);
+      }
+      for (std::size_t s = 0; s < file.sides.size(); ++s) {
+        const auto cell = rpc::to_host(mesh->sides[s].cell);
+        ASSERT_EQ(cell.extent(0), file.sides[s].cell.size());
+        for (std::size_t f = 0; f < cell.extent(0); ++f) ASSERT_EQ(mesh->cell_id(cell(f)), file.sides[s].cell[f]);
+      }
+      for (std::size_t s = 0; s < file.points.size(); ++s) {
+        std::vector<int> ids;
+        for (const LO n : mesh->points[s].node) ids.push_back(static_cast<int>(mesh->node_id(n)));
+        std::sort(ids.begin(), ids.end());
+        EXPECT_EQ(ids, file.points[s].node);
+      }
+      EXPECT_LE(mean_jump(*mesh), 1.2 * mean_jump(*in_order)) << element.name();
+    }
 }
 
 TEST(Contracted, RanksHaveTheSameMeshes)

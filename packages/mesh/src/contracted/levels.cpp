@@ -5,6 +5,7 @@
 #include "rpc/core/parallel.hpp"
 #include "rpc/mesh/contracted.hpp"
 #include "rpc/mesh/rules.hpp"
+#include "spatial_order.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -55,10 +56,10 @@ std::vector<int> order_along_axes(const MeshData &mesh)
 }
 
 /// From the finest to the coarsest, on rank 0.
-std::vector<MeshData> contracted_levels(MeshData whole)
+std::vector<MeshData> contracted_levels(MeshData finest)
 {
   std::vector<MeshData> levels;
-  levels.push_back(std::move(whole));
+  levels.push_back(std::move(finest));
   if (levels.front().element.shape != Shape::simplex) return levels;
   const int dim = levels.front().element.dim, order = levels.front().element.order;
   for (MeshData mesh = levels.front();;) { // of order 1 but for the first
@@ -77,7 +78,17 @@ std::vector<MeshData> contracted_levels(MeshData whole)
 std::shared_ptr<const Mesh> distribute_with_contracted(MeshData whole, const RCP<const Comm> &comm)
 {
   std::vector<MeshData> levels;
-  on_root(*comm, ExitCode::internal_error, [&] { levels = contracted_levels(std::move(whole)); });
+  std::vector<int> node_id, cell_id; // of the finest
+  bool along_axes = false;
+  on_root(*comm, ExitCode::internal_error, [&] {
+    std::vector<int> order = order_along_axes(whole);
+    along_axes = !order.empty();
+    if (!along_axes) order = along_morton_curve(whole);
+    SpatialOrder finest = renumbered(std::move(whole), std::move(order));
+    node_id = std::move(finest.node_id);
+    cell_id = std::move(finest.cell_id);
+    levels = contracted_levels(std::move(finest.mesh));
+  });
   const GO num_levels = sum_all(*comm, static_cast<GO>(levels.size()));
   levels.resize(num_levels); // empty ones on other ranks
   std::shared_ptr<const Mesh> coarse;
@@ -85,10 +96,17 @@ std::shared_ptr<const Mesh> distribute_with_contracted(MeshData whole, const RCP
     Division division;
     on_root(*comm, ExitCode::internal_error, [&] {
       const MeshData &whole_level = levels[k];
-      const std::vector<int> order = k == 0 ? order_along_axes(whole_level) : std::vector<int>{};
+      std::vector<int> order;
+      if (k == 0 && along_axes) {
+        order.resize(whole_level.num_nodes());
+        std::iota(order.begin(), order.end(), 0);
+      }
       const int ranks = k == 0 ? comm->getSize() : ranks_for(whole_level, comm->getSize());
       division = divide_by(whole_level, comm->getSize(), ranks_of_cells(whole_level, ranks), order);
       division.sorts_cells = !order.empty();
+      if (k > 0) return;
+      division.node_id = std::move(node_id);
+      division.cell_id = std::move(cell_id);
     });
     auto mesh = std::make_shared<Mesh>(distribute(levels[k], comm, division));
     levels[k] = {};
