@@ -78,6 +78,13 @@ void assemble(solver::MeshLevel &level)
   level.unassembled.reset();
 }
 
+/// Unknowns with which a mesh is factored, without a coarser one. Where a body is one cell across, contracted meshes are much too stiff.
+GO fewest_unknowns(const mesh::Mesh &finest)
+{
+  if (finest.parents && !finest.parents->nested) return mesh::contraction_rules.few;
+  return finest.dim() == 2 ? mesh::coarsening_rules.few_2d : mesh::coarsening_rules.few_3d;
+}
+
 std::optional<int> thin_direction(const NestedMesh &mesh)
 {
   const auto &box = mesh.discretization().mesh->box;
@@ -130,7 +137,7 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
   levels.prescribed = prescribed;
   const int dim = finest.discretization().dim();
   levels.order = finest.discretization().mesh->element.order;
-  const GO few = dim == 2 ? mesh::coarsening_rules.few_2d : mesh::coarsening_rules.few_3d;
+  const GO few = fewest_unknowns(*finest.discretization().mesh);
   const auto held = held_sides(model.dirichlet);
   const auto num_unknowns = [](const NestedMesh &mesh) {
     return static_cast<GO>(mesh.discretization().owned_dofs->getGlobalNumElements());

@@ -59,11 +59,11 @@ private:
     for (const auto rank : {Features::Rank::edge, Features::Rank::face, Features::Rank::inside})
       for (int v = 0; v < mesh_.num_nodes(); ++v)
         if (!kept[v] && features_.rank[v] == rank) left.push_back(v);
-    for (int sweep = 0; sweep < contraction_rules.most_sweeps && !left.empty(); ++sweep) {
+    while (!left.empty()) {
       std::vector<int> stay;
       for (const int v : left)
         if (!contract(v, kept)) stay.push_back(v);
-      if (stay.size() == left.size() && sweep > 0) break;
+      if (stay.size() == left.size()) break;
       left = std::move(stay);
     }
   }

@@ -27,6 +27,8 @@ inline constexpr_rules CoarseningRules coarsening_rules;
 
 /// Of the contraction of edges.
 struct ContractionRules {
+  Rule<int> few{2500, "contraction.few", "unknowns of order 1 that multigrid factors, with no coarser mesh [-]",
+                "doc/measurements.md: Contracted meshes with few unknowns"};
   // Of stretched cells some are sheared before their neighbours follow: a part of what a vertex' worst cell had at first is enough.
   Rule<double> least_quality{0.3, "contraction.least_quality", "of new cells, 1 for an equilateral one [-]",
                              "doc/theory.md, section 2"};
@@ -35,7 +37,6 @@ struct ContractionRules {
                          "doc/theory.md, section 2"};
   Rule<double> least_cosine{0.8, "contraction.least_cosine", "cosine of the turn of a boundary facet [-]",
                             "doc/theory.md, section 2: 37 degrees"};
-  Rule<int> most_sweeps{3, "contraction.most_sweeps", "sweeps over vertices to take away [-]", "not measured"};
   // In a cube cut into tetrahedra edges are up to 1.73 times as long as the shortest one, and where inner nodes are moved by 15 % of a cell up
   // to 2.7 times.
   Rule<double> most_stretched{3, "contraction.most_stretched",
