@@ -5,10 +5,11 @@
 
 Scene K is that of forces.py with the same seed, but for its top: an entry of Rigid, which first goes down and tilts on a given path; a body of
 revolution only goes down. Then the forces and moments that this took, of each step, move it, in some scenes with springs to the ground, which bear a
-part of them. Told are failures: the motions that come back differ by more than 1e-9 of the largest displacement that they make, or a run does not
-end as it should. Where the foundation carries no more than the given forces, they must be refused with exit code 5. Where less than a tenth of what
+part of them. Told are failures: the force that comes back differs by more than 1e-10 of itself, the motions by more than 1e-7 of the largest
+displacement that they make (where nearly all that touches yields a direction is soft, in which residuals of 1e-11 leave more), or a run does not end
+as it should. Where the foundation carries no more than the given forces, they must be refused with exit code 5. Where less than a tenth of what
 touches is short of yielding, without hardening, forces hardly determine the motions: such scenes must end, and are not compared. The exit code is 1
-if a scene failed, or the median of the ratio of Newton steps is above 1.5.
+if a scene failed, the median of what motions are off is above 1e-10, or that of the ratio of Newton steps above 1.5.
 """
 import argparse
 import concurrent.futures
@@ -23,7 +24,7 @@ import tempfile
 
 import forces
 
-SAME, MOST_RATIO = 1e-9, 1.5
+SAME_FORCE, SAME_MOTION, MEDIAN, MOST_RATIO = 1e-10, 1e-7, 1e-10, 1.5
 SPARE = 0.1  # of what touches: so much is short of yielding where motions are compared
 
 
@@ -95,7 +96,7 @@ def spare(deck, summary, rows):
 
 
 def judge(rpc, seed, number, keep):
-    """(complaint or None, what happened, ratio of Newton steps or None)"""
+    """(complaint or None, what happened, (ratio of Newton steps, what motions are off) or None)"""
     deck, times, motions = scene(seed, number)
     folder = tempfile.mkdtemp(prefix="rpc_rigid_")
     try:
@@ -119,11 +120,14 @@ def judge(rpc, seed, number, keep):
         off = max(abs(a - b) * (deck["Mesh"]["Upper"][0] if "Rotation" in motion else 1)
                   for motion in motions for a, b in zip(moved[motion], read(found, rows, motion, "motion"))) / largest
         ratio = forces.steps_of(found) / max(1, forces.steps_of(given))
+        borne = [a - springs.get("Y", 0) * (b - c) for a, b, c in zip(loads["Y"], read(found, rows, "Y", "motion"), moved["Y"])]
+        back = max(abs(a - b) for a, b in zip(borne, read(found, rows, "Y", "force"))) / max(map(abs, loads["Y"]))
         what = (f"{found['element']} {found.get('kinematics', 'space')}, {found['dofs']} dofs, {len(springs)} springs: off by {off:.1e}, "
                 f"Newton {forces.steps_of(given)} -> {forces.steps_of(found)}")
         if left < SPARE:
             return None, f"{left:.2f} of what touches does not yield: not compared; {what}", None
-        return (None if off <= SAME else f"motions differ by {off:.2e}: {what}"), what, ratio
+        fits = off <= SAME_MOTION and back <= SAME_FORCE
+        return (None if fits else f"the force differs by {back:.2e}, motions by {off:.2e}: {what}"), what, (ratio, off)
     finally:
         if keep:
             shutil.copytree(folder, pathlib.Path(keep) / str(number), dirs_exist_ok=True)
@@ -146,10 +150,10 @@ def main():
             failed += complaint is not None
             ratios += [ratio] if ratio is not None else []
             print(f"{number}: {'FAILED ' + complaint if complaint else what}", flush=True)
-    median = statistics.median(ratios) if ratios else 0
-    print(f"{failed} of {len(numbers)} failed; {len(ratios)} compared; Newton steps by force over those by path: median {median:.2f}, "
-          f"most {max(ratios, default=0):.2f}")
-    return 1 if failed or median > MOST_RATIO else 0
+    steps, off = [[both[k] for both in ratios] or [0] for k in (0, 1)]
+    print(f"{failed} of {len(numbers)} failed; {len(ratios)} compared; motions off by {statistics.median(off):.1e} in the median, {max(off):.1e} at most; "
+          f"Newton steps by force over those by path: median {statistics.median(steps):.2f}, most {max(steps):.2f}")
+    return 1 if failed or statistics.median(off) > MEDIAN or statistics.median(steps) > MOST_RATIO else 0
 
 
 if __name__ == "__main__":

@@ -130,8 +130,9 @@ void add_rows_of_tied(const Discretization &d, const Parts &parts, const Dirichl
   const Comm &comm = d.mesh->comm();
   const TiedUnknowns &tied = *dirichlet.tied;
   const auto of_node = to_host(parts.of_node);
-  for (int j = 0; j < tied.size(); ++j) {
-    if (tied.shape[j].extent(0) > 0) continue; // of a rigid side
+  int of_forces = tied.size(); // the groups of rigid sides follow
+  for (const RigidSide &side : dirichlet.rigid) of_forces -= static_cast<int>(side.unknown.size());
+  for (int j = 0; j < of_forces; ++j) {
     const auto members = to_host(tied.members[j]);
     std::vector<LO> nodes;
     int first = parts.size(), last = -1, component = 0;
