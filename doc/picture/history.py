@@ -65,6 +65,8 @@ class History:
         most = max(found, key=lambda name: spread(self.columns[name]), default=None)
         if most is None or spread(self.columns[most]) == 0:
             return None
+        if most.startswith("obstacle_displacement"):
+            sign = -sign  # the obstacle presses the body, which a side does from behind
         return [-sign * value for value in self.columns[most]]
 
     def shear(self):

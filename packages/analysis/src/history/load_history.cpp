@@ -248,10 +248,27 @@ StepOptions to_look_further(StepOptions options)
   return options;
 }
 
+/// Where searches lead that fall by the same factor each, no further than as far again as the last way.             (3.17d)
+Point beyond(const Point &place, const Point &way, const Point &way_before)
+{
+  const double square = inner(way_before, way_before), factor = square > 0 ? inner(way, way_before) / square : 0;
+  if (!(std::abs(factor) <= 0.5)) return place;
+  return difference(place, scaled(-factor / (1 - factor), way));
+}
+
+/// How far the obstacle would go on, the other way round, were it to move as in the last step.
+Point further_by(const Memory &last, const Memory &before, const double t)
+{
+  return scaled((t - last.time) / (last.time - before.time), difference(before.obstacle, last.obstacle));
+}
+
 /// Adds what the searches before have taken and shown.
 void add_searched(const StepSolution &before, StepSolution &s)
 {
+  auto newton = before.uzawa.newton_iterations; // the first ones first
+  newton.insert(newton.end(), s.uzawa.newton_iterations.begin(), s.uzawa.newton_iterations.end());
   analysis::add_work(before, s);
+  s.uzawa.newton_iterations = std::move(newton);
   s.levels = before.levels;
   s.not_predicted = before.not_predicted;
   s.found_by = std::max(s.found_by, before.found_by);
@@ -299,6 +316,7 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
   ++last_.parts;
   StepSolution s;
   std::optional<StepSolution> searched; // what the searches before have taken
+  Point way_before{};
   Headway searches({1, Headway::unlimited, Headway::unlimited, step_rules.most_searches - 1});
   while (true) {
     const bool is_rough = !searched && bends(model);
@@ -307,7 +325,9 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
     add_work(s, last_);
     s.prediction_seconds += std::exchange(prediction_seconds, 0);
     const Point way = left_to_go(*problem_, s);
-    const bool rests = !is_rough && obstacle_rests(*problem_, s, options.uzawa.tolerance);
+    const bool rounds = searched && length(way) >= length(way_before);
+    const bool rests =
+        !is_rough && obstacle_rests(*problem_, s, (rounds ? step_rules.of_rounding : 1.) * options.uzawa.tolerance);
     if (by_force) take_to_obstacle(way, s);
     if (searched) add_searched(*searched, s);
     if (!s.uzawa.converged) return s;
@@ -318,9 +338,11 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
     const auto next = on_foundation ? met_at(*s.u, s.step.obstacle) : met;
     if (rests && (!on_foundation || settled(*met, *next, kept_.memory->foundations))) break;
     met = next;
-    step = problem_->step(t, met.get(), memory(), by_force ? &s.step.obstacle : nullptr);
+    const Point place = searched ? beyond(s.step.obstacle, way, way_before) : s.step.obstacle;
+    step = problem_->step(t, met.get(), memory(), by_force ? &place : nullptr);
     starts = {{onto(s.step.contact, step.contact, s.state)}, {}};
     if (by_force) searched = s;
+    way_before = way;
   }
   if (s.uzawa.converged) remember(t, model.seen_at(t, s.step.obstacle).contact, step, s);
   return s;
@@ -332,7 +354,7 @@ void LoadHistory::foresee(const MultiVector *const met, Step &step, Starts &star
   if (!starts.predict) return;
   Prediction predicted = starts.predict();
   if (predicted.start) {
-    const Point from = step.obstacle, way = difference(from, predicted.obstacle);
+    const Point way = difference(predicted.obstacle, step.obstacle);
     const contact::ContactNodes points = step.contact;
     step = problem_->step(step.time, met, memory(), &predicted.obstacle);
     const int dim = problem_->discretization().dim();
@@ -371,9 +393,13 @@ Starts LoadHistory::starts_of(const Step &step)
   Starts starts{std::exchange(offered_, {}), {}};
   if (kept_.memory) {
     starts.states.push_back(state_of(step.contact, *kept_.memory));
-    if (kept_.before && kept_.before->time < kept_.memory->time)
-      starts.states.push_back(
-          extrapolated(step.contact, *kept_.before, *kept_.memory, step.time)); // of that obstacle, too
+    if (kept_.before && kept_.before->time < kept_.memory->time) {
+      auto later = extrapolated(step.contact, *kept_.before, *kept_.memory, step.time);
+      if (pressed_by_force(problem_->model())) // seen from where the obstacle was in the last step
+        later = shifted(std::move(later), further_by(*kept_.memory, *kept_.before, step.time),
+                        problem_->discretization().dim());
+      starts.states.push_back(std::move(later));
+    }
     starts.states.push_back(at_rest(step.contact, problem_->discretization()));
   }
   if (kept_.memory || starts.states.empty())

@@ -361,7 +361,7 @@ void read_tied(const Problem &problem, const StepOptions &options, StepSolution 
   for (const fem::RigidSide &side : dirichlet.rigid) s.rigid_motions.push_back(fem::motions_of(side, *s.u));
   if (!dirichlet.tied) return;
   const auto &conditions = problem.model().dirichlet;
-  if (s.uzawa.converged && obstacle_rests(problem, s, options.uzawa.tolerance))
+  if (s.uzawa.converged && obstacle_rests(problem, s, step_rules.of_rounding * options.uzawa.tolerance))
     contact::settle_tied_points(problem.discretization(), s.step.contact, dirichlet, problem.model().contact, s.state);
   s.displacements = MeanDisplacements(problem)(*s.u);
   const auto moved = means(*dirichlet.tied, *s.u);
