@@ -248,14 +248,6 @@ StepOptions to_look_further(StepOptions options)
   return options;
 }
 
-/// Where searches lead that fall by the same factor each, no further than as far again as the last way.             (3.17d)
-Point beyond(const Point &place, const Point &way, const Point &way_before)
-{
-  const double square = inner(way_before, way_before), factor = square > 0 ? inner(way, way_before) / square : 0;
-  if (!(std::abs(factor) <= 0.5)) return place;
-  return difference(place, scaled(-factor / (1 - factor), way));
-}
-
 /// How far the obstacle would go on, the other way round, were it to move as in the last step.
 Point further_by(const Memory &last, const Memory &before, const double t)
 {
@@ -282,8 +274,8 @@ void give_up_search(const Point &way, StepSolution &s)
 {
   s.uzawa.converged = false;
   std::ostringstream reason;
-  reason << "the obstacle that a force moves has not come to rest in " << step_rules.most_searches
-         << " searches, of which the last has moved it by " << length(way);
+  reason << "the obstacle that a force moves does not come to rest: of " << step_rules.most_searches
+         << " searches none has brought it nearer, and the last has moved it by " << length(way);
   s.uzawa.reason = reason.str();
 }
 
@@ -318,6 +310,7 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
   std::optional<StepSolution> searched; // what the searches before have taken
   Point way_before{};
   Headway searches({1, Headway::unlimited, Headway::unlimited, step_rules.most_searches - 1});
+  Headway ways({step_rules.helpful, Headway::unlimited, step_rules.most_searches - 1}); // of the obstacle, which fall
   while (true) {
     const bool is_rough = !searched && bends(model);
     s = solve_step(*problem_, step, *state_, is_rough ? to_look_further(options) : options, starts, reports);
@@ -331,15 +324,15 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
     if (by_force) take_to_obstacle(way, s);
     if (searched) add_searched(*searched, s);
     if (!s.uzawa.converged) return s;
-    if ((!on_foundation && rests) || searches.take(true) == Headway::Answer::stuck) {
+    if ((!on_foundation && rests) ||
+        (by_force ? ways.add(length(way)) : searches.take(true)) == Headway::Answer::stuck) {
       if (!rests) give_up_search(way, s);
       break;
     }
     const auto next = on_foundation ? met_at(*s.u, s.step.obstacle) : met;
     if (rests && (!on_foundation || settled(*met, *next, kept_.memory->foundations))) break;
     met = next;
-    const Point place = searched ? beyond(s.step.obstacle, way, way_before) : s.step.obstacle;
-    step = problem_->step(t, met.get(), memory(), by_force ? &place : nullptr);
+    step = problem_->step(t, met.get(), memory(), by_force ? &s.step.obstacle : nullptr);
     starts = {{onto(s.step.contact, step.contact, s.state)}, {}};
     if (by_force) searched = s;
     way_before = way;
