@@ -46,7 +46,7 @@ Teuchos::ParameterList valid_adapt_parameters()
       "which may be too small, or `guaranteed`. Guaranteed are bodies that displacements hold, in the plane of "
       "triangles or parallelograms, in space of tetrahedra of order 1, on one rank, without load steps, friction, "
       "hardening and springs, on straight or flat contact "
-      "sides; for other decks it is refused. It takes about as long as two runs without contact.");
+      "sides; for other decks it is refused. It takes about as long as two runs without contact, in space as ten.");
   valid.set("Exact Energy", std::numeric_limits<double>::quiet_NaN(),
             "J of the exact solution [J], in 2D per m, to compare the estimate with; nan, which is to leave it out: "
             "unknown.");
