@@ -31,6 +31,8 @@ std::vector<int> rotations_of(const fem::DirichletCondition &condition)
     std::copy_if(condition.rigid->motions.begin(), condition.rigid->motions.end(), std::back_inserter(rotations),
                  [](const int motion) { return motion >= 3; });
   return rotations;
+}
+
 /// Whether a force moves an obstacle.
 bool is_moved(const Scene &scene)
 {
