@@ -303,6 +303,8 @@ analysis::HistoryState Checkpoints::state_of(Whole whole) const
     state.matrix_assemblies = text.at("assemblies");
     if (const auto largest = text.find("largest_estimate"); largest != text.end() && !largest->is_null()) // NaN is null
       state.largest_estimate = *largest;
+    state.jumped_force = text.at("jumped_force");
+    state.jumped_energy = text.at("jumped_energy");
   } catch (const json::parse_error &) { // on all ranks: they read the same text
     throw Error(ExitCode::bad_input, "restart: \"" + path +
                                          "\" is damaged: its text is not what was written. Take an older one, "
@@ -327,7 +329,9 @@ void Checkpoints::write(const analysis::HistoryState &state)
                {"energy_scale", state.last.energy_scale},
                {"obstacle", state.last.obstacle},
                {"assemblies", state.matrix_assemblies},
-               {"largest_estimate", state.largest_estimate}};
+               {"largest_estimate", state.largest_estimate},
+               {"jumped_force", state.jumped_force},
+               {"jumped_energy", state.jumped_energy}};
   for (const auto &[name, content] : scene_.identity) text["deck"][name] = content;
   text["records"] = json::array();
   for (const StepRecord &record : state.records) text["records"].push_back(to_json(record, scope));

@@ -69,11 +69,8 @@ void add_what_a_mesh_leaves(const Cycle &last, const std::vector<double> &eta, O
 {
   const double force = force_at_work(last.contact.force, last.reactions),
                squared = caution * last.estimate * last.estimate;
-  const double moved = moved_by(last, force);
   errors.energy = std::max(errors.energy, energy_left(last));
-  const auto by_energy = [moved](const double energy) { return moved > 0 ? 2 * energy / moved : 0; };
-  double jumped = last.jumped_force + by_energy(last.jumped_energy);
-  jumped += moved > 0 ? std::min(last.misread_force, by_energy(last.misread_energy)) : last.misread_force;
+  const double jumped = left_by_jumps(last).force;
   errors.contact_force = std::max(errors.contact_force, squared * force + jumped);
   double largest = force;
   for (const auto &reaction : last.reactions) largest = std::max(largest, length(reaction));
@@ -132,10 +129,11 @@ void add_what_earlier_steps_leave(const CoarserHistory &coarser, const Cycle &la
     return error_of_history(std::abs(distance), coarser.largest_estimate, eta);
   };
   const double of_force = earlier.moved_by > 0 ? caution * squared / earlier.moved_by : 0;
-  errors.energy += std::max(shown(last.energy - other.energy), caution * squared / 2);
-  errors.contact_force += std::max(shown(difference_of(last.contact.force, other.contact.force)), of_force);
+  const double least = std::max(of_force, earlier.jumps.force);
+  errors.energy += std::max({shown(last.energy - other.energy), caution * squared / 2, earlier.jumps.energy});
+  errors.contact_force += std::max(shown(difference_of(last.contact.force, other.contact.force)), least);
   for (std::size_t k = 0; k < errors.reactions.size(); ++k)
-    errors.reactions[k] += std::max(shown(difference_of(last.reactions[k], other.reactions[k])), of_force);
+    errors.reactions[k] += std::max(shown(difference_of(last.reactions[k], other.reactions[k])), least);
   errors.max_pressure += shown(last.contact.max_pressure - other.contact.max_pressure);
   errors.contact_length += shown(last.contact.contact_length - other.contact.contact_length);
   errors.max_penetration += shown(last.contact.max_penetration - other.contact.max_penetration);
@@ -155,11 +153,20 @@ bool is_fixed(const std::vector<Cycle> &cycles, const FixedByLoad &fixed)
 
 } // namespace
 
+LeftByJumps left_by_jumps(const Cycle &cycle)
+{
+  const double moved = moved_by(cycle, force_at_work(cycle.contact.force, cycle.reactions));
+  const auto by_energy = [moved](const double energy) { return moved > 0 ? 2 * energy / moved : 0; };
+  const double misread =
+      moved > 0 ? std::min(cycle.misread_force, by_energy(cycle.misread_energy)) : cycle.misread_force;
+  return {cycle.jumped_force + by_energy(cycle.jumped_energy) + misread,
+          cycle.jumped_energy + cycle.jumped_force * moved_by(cycle, length(cycle.contact.force)) +
+              cycle.misread_energy};
+}
+
 double energy_left(const Cycle &cycle)
 {
-  const double squared = caution * cycle.estimate * cycle.estimate;
-  return squared * cycle.energy_norm_squared / 2 + cycle.jumped_energy +
-         cycle.jumped_force * moved_by(cycle, length(cycle.contact.force)) + cycle.misread_energy;
+  return caution * cycle.estimate * cycle.estimate * cycle.energy_norm_squared / 2 + left_by_jumps(cycle).energy;
 }
 
 std::string error_bar_name(const std::string &key, const ResultScope &scope)

@@ -41,6 +41,7 @@ EarlierSteps earlier_steps(const Task &task, const Solution &s)
   EarlierSteps earlier;
   earlier.matter = contact::has_friction(task.model.contact);
   earlier.largest_estimate = s.largest_estimate;
+  earlier.jumps = s.earlier_jumps;
   for (const analysis::StepRecord &step : s.history) {
     if (!step.converged || step.time > s.time) continue;
     const double force = force_at_work(step.contact.force, step.reactions);

@@ -247,11 +247,21 @@ Solution solve_adaptively(const Task &task, const Solution *const earlier, const
   return std::move(*best);
 }
 
+/// The most that a step and those before it leave open.
+LeftByJumps jumps_so_far(const Solution &s)
+{
+  LeftByJumps most = s.earlier_jumps;
+  if (!s.adaptation || s.adaptation->cycles.empty()) return most;
+  const auto own = left_by_jumps(s.adaptation->cycles[best_of(s.adaptation->cycles)]);
+  return {std::max(most.force, own.force), std::max(most.energy, own.energy)};
+}
+
 /// What a step leaves for the next one, which reads nothing else of it.
 analysis::HistoryState state_of(const Solution &s)
 {
-  return {s.discretization, s.mesh_options,      *s.memory,         std::nullopt,
-          s.history,        s.matrix_assemblies, s.largest_estimate};
+  const LeftByJumps jumps = jumps_so_far(s);
+  return {s.discretization,    s.mesh_options,     *s.memory,   std::nullopt, s.history,
+          s.matrix_assemblies, s.largest_estimate, jumps.force, jumps.energy};
 }
 /// The step that left it, without its solution.
 Solution step_of(analysis::HistoryState state)
@@ -264,6 +274,7 @@ Solution step_of(analysis::HistoryState state)
   s.history = std::move(state.records);
   s.matrix_assemblies = state.matrix_assemblies;
   s.largest_estimate = state.largest_estimate;
+  s.earlier_jumps = {state.jumped_force, state.jumped_energy};
   return s;
 }
 
@@ -362,6 +373,7 @@ Solution solve_steps_adaptively(const Task &task, const RCP<const Comm> &comm, c
       }
       s.energy_rounding = std::max(earlier ? earlier->energy_rounding : 0, analysis::energy_rounding(task, s));
       s.largest_estimate = std::max(earlier ? earlier->largest_estimate : 0, s.largest_estimate);
+      if (earlier) s.earlier_jumps = jumps_so_far(*earlier);
       earlier = std::move(s);
       solved = true;
       if (listener.load_step && earlier->has_results()) listener.load_step(*earlier);

@@ -211,6 +211,10 @@ TEST(ErrorBarsOfHistories, CountWhatMeshesOfEarlierStepsHaveLeft)
   EXPECT_NEAR(errors.contact_force, own.contact_force + 1 / 0.1, 1e-12);
   errors = observed_errors(cycles, coarser_history(0.6, cycles.front()), earlier);
   EXPECT_NEAR(errors.contact_force, own.contact_force + 2 * 0.2 * 0.2 / 2, 1e-12);
+  // A jump of the gap within a facet that an earlier step has dented, and that bears nothing any more.
+  errors = observed_errors(cycles, coarser_history(0.6, cycles.front()), {true, 0.2, 2, {0.7, 0.3}});
+  EXPECT_NEAR(errors.contact_force, own.contact_force + 0.7, 1e-12);
+  EXPECT_NEAR(errors.energy, own.energy + 0.3, 1e-12);
 }
 
 TEST(ErrorBarsOfHistories, AreThoseOfTheLastStepWhereNothingIsLeft)
