@@ -119,6 +119,17 @@ void share_what_springs_tell(const Cycle &last, ObservedErrors &errors)
   errors.max_pressure = std::max(errors.max_pressure, errors.max_penetration / compliance);
 }
 
+/// A penetration of 0 has no bar where the pressure may reach the yield stress: how deep the foundation gives way there, no mesh has shown.
+void judge_rigid_foundation(const Cycle &last, ObservedErrors &errors)
+{
+  const contact::ContactSums &all = last.contact;
+  if (all.max_dent > 0 || all.foundation_energy > 0 || !std::isfinite(last.peak.lowest_bound)) return;
+  if (all.max_pressure + errors.max_pressure < last.peak.lowest_bound) return; // NaN is not
+  errors.max_penetration = std::numeric_limits<double>::quiet_NaN();
+  errors.unknown["max_penetration"] =
+      "nothing yields on this mesh, and the largest pressure may reach the yield stress";
+}
+
 /// What the meshes of earlier steps leave comes to what those of the last one do.                              (10.7c)
 void add_what_earlier_steps_leave(const CoarserHistory &coarser, const Cycle &last, const EarlierSteps &earlier,
                                   ObservedErrors &errors)
@@ -224,6 +235,7 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles, const FixedByLo
     errors.unknown["contact_length"] = "the length in contact does not settle from mesh to mesh";
   }
   share_what_springs_tell(cycles.back(), errors);
+  judge_rigid_foundation(cycles.back(), errors);
   return errors;
 }
 

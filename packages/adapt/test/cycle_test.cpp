@@ -183,6 +183,23 @@ TEST(ErrorBars, OfALargestPressureThatGrowsWithoutLimitAreNone)
   EXPECT_TRUE(std::isnan(observed_errors({mesh(0.5, 10, 30), kinked}).max_pressure));
 }
 
+TEST(ErrorBars, OfNoPenetrationAreNoneWhereThePressureMayReachTheYieldStress)
+{
+  std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10, 30)};
+  EXPECT_EQ(observed_errors(cycles).max_penetration, 0); // nothing can yield
+  cycles.back().peak.lowest_bound = 31;
+  EXPECT_EQ(observed_errors(cycles).max_penetration, 0);
+  cycles.back().recovered_max_pressure = 2;
+  const auto errors = observed_errors(cycles);
+  EXPECT_TRUE(std::isnan(errors.max_penetration));
+  EXPECT_NE(errors.unknown.at("max_penetration").find("yield stress"), std::string::npos);
+  cycles.back().recovered_max_pressure = 0;
+  cycles.back().peak.friction_edge = true; // the largest pressure has no bar
+  EXPECT_TRUE(std::isnan(observed_errors(cycles).max_penetration));
+  cycles.back().contact.max_dent = 0.1; // the foundation gives way
+  EXPECT_FALSE(std::isnan(observed_errors(cycles).max_penetration));
+}
+
 adapt::CoarserHistory coarser_history(const double largest_estimate, const Cycle &last)
 {
   adapt::CoarserHistory coarser;

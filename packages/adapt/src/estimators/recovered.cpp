@@ -205,6 +205,18 @@ double highest_bound(const Comm &comm, const contact::ContactNodes &c)
   return max_all(comm, std::max(0., highest));
 }
 
+/// The pressure from which the foundation may give way; collective.
+double lowest_bound(const Comm &comm, const contact::ContactNodes &c)
+{
+  const contact::ContactNodes points = c;
+  double lowest = 0;
+  Kokkos::parallel_reduce(
+      "rpc::adapt::lowest_yield_stress", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &least) { least = math::fmin(least, points.law(i).yield); },
+      Kokkos::Min<double>(lowest));
+  return min_all(comm, lowest);
+}
+
 } // namespace
 
 ErrorEstimate recovered_estimate(const EstimateInput &of)
@@ -221,6 +233,7 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
   estimate.unseen_squared = DeviceView<double *>("rpc::adapt::unseen_squared", squared.extent(0));
   estimate.seen_from = DeviceView<double *>("rpc::adapt::seen_from", squared.extent(0));
   estimate.peak.at_bound = highest >= (1 - 1e-12) * highest_bound(mesh.comm(), of.contact);
+  estimate.peak.lowest_bound = lowest_bound(mesh.comm(), of.contact);
   constexpr int num_sums = 14;
   double sums[num_sums] = {}, peak = 0, spread = 0, drop = 0, kink = 0; // Kokkos' maximum over no facets is -DBL_MAX
   Kokkos::parallel_reduce(
