@@ -258,14 +258,15 @@ void print_bound(std::ostream &out, const Scene &scene, const Solution &s)
   if (!s.bound) return;
   const bound::EnergyBound &b = *s.bound;
   const std::string unit = scene.model.units.of(unit::energy, s.discretization.per_length());
-  print_text(out, "guaranteed",
-             b.missing.empty() ? "J of the exact solution is in [" + number_text("%.9g", b.lower) + ", " +
-                                     number_text("%.9g", b.upper) + "] " + unit + "; error at most " +
-                                     (s.energy_norm_squared > 0
-                                          ? number_text("%.1e", b.energy_norm / std::sqrt(s.energy_norm_squared)) +
-                                                " of the energy norm"
-                                          : number_text("%.1e", b.energy_norm) + " in the energy norm")
-                               : "nothing: " + b.missing);
+  print_text(
+      out, "guaranteed",
+      b.missing.empty()
+          ? std::string(bound::name_of(b.of)) + " of the exact solution is in [" + number_text("%.9g", b.lower) + ", " +
+                number_text("%.9g", b.upper) + "] " + unit + "; error at most " +
+                (s.energy_norm_squared > 0
+                     ? number_text("%.1e", b.energy_norm / std::sqrt(s.energy_norm_squared)) + " of the energy norm"
+                     : number_text("%.1e", b.energy_norm) + " in the energy norm")
+          : "nothing: " + b.missing);
 }
 
 /// Where error bars come from, or how to have them.

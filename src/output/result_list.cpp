@@ -81,6 +81,7 @@ void add_error_bars(std::vector<Result> &all, const adapt::ObservedErrors &error
 void add_bounded_energy(std::vector<Result> &all, const Scene &scene, const Solution &s)
 {
   if (!s.bound || !s.bound->missing.empty() || !std::holds_alternative<mesh::BoxOptions>(scene.mesh)) return;
+  if (s.bound->of != bound::EnergyBound::Of::energy) return; // the interval counts friction's work, which J is without
   const double bar = std::max(s.bound->upper - s.energy, s.energy - s.bound->lower);
   for (Result &result : all) {
     if (result.key != "energy_J" || result.error_bar <= bar) continue;

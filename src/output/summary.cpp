@@ -112,6 +112,7 @@ nlohmann::ordered_json bound_json(const bound::EnergyBound &b)
   nlohmann::ordered_json json;
   const bool known = b.missing.empty();
   json["kind"] = "guaranteed";
+  json["of"] = bound::name_of(b.of);
   json["energy_J"] = known ? nlohmann::ordered_json({b.lower, b.upper}) : nlohmann::ordered_json();
   json["energy_norm"] = known ? nlohmann::ordered_json(b.energy_norm) : nlohmann::ordered_json();
   json["reason"] = b.missing;

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Random scenes with a guaranteed bound: it holds the energy of a much finer solution, and is not much larger than the error.
 
-    python3 bounds.py --rpc=build/rpc [--kind=plane|space] [--seed=1] [--scenes=100] [--only=K] [--corners=1] [--jobs=2] [--keep=DIR]
+    python3 bounds.py --rpc=build/rpc [--kind=plane|space] [--laws=1] [--seed=1] [--scenes=100] [--only=K] [--corners=1] [--jobs=2] [--keep=DIR]
 
 Scene K comes from the seed and K alone: a rectangle, a parallelogram or an L of P1, P2, Q1 or Q2, of triangles also with distorted cells, of one or two
 materials, in plane strain or stress, held at one or two sides or pressed down by one, with smooth loads on sides and maybe a force per volume, on a
 foundation with a finite or an infinite yield stress and an even or a tilted gap. The reference is the same scene on cells of P2 half as
 long that are then adapted: J(u) is its upper bound less half of the square of its estimated error. A scene fails where the lower bound lies above the upper one of the
 reference, or a run fails. Told are the effectivities sqrt((J(u^) - lower) / (J(u^) - J(u))): the smallest, the median, the largest, and how many
-exceed LARGE. In space the bodies are blocks, sheared or distorted or with a corner cut out, of tetrahedra of order 1; the reference has cells of P2 half as long
-and no guaranteed bound: its energy must lie in the interval but for its estimated error, and LARGE is LARGE_IN_SPACE. With --corners=1 loads do not end at the corners: stresses jump with the direction there, which stresses with prescribed tractions resolve
+exceed LARGE. With --laws=1 foundations harden, lie on springs, rub with Tresca's friction, or keep the dents of a first step, whose meshes are nested
+triangles: then the reference is the last mesh of the same run. In space the bodies are blocks, sheared or distorted or with a corner cut out, of tetrahedra of
+order 1, without such laws; the reference has cells of P2 half as long and no guaranteed bound: its energy must lie in the interval but for its estimated error,
+and LARGE is LARGE_IN_SPACE. With --corners=1 loads do not end at the corners: stresses jump with the direction there, which stresses with prescribed tractions resolve
 worse than displacements. The exit code is 1 if a scene failed, an effectivity is below 1 by more than its reference may be off, or the median exceeds LARGE.
 """
 import concurrent.futures
@@ -35,6 +37,7 @@ LARGE_IN_SPACE = 1.5
 FINER = 2
 MOST_DOFS = 30000  # of references
 TARGET = 0.003
+STEPS_TARGET = 0.02  # of scenes with dents, whose meshes are nested
 REFUSED = 5  # exit code: the scene has no solution
 ROUNDING = 1e-9
 UNSTRAINED = 1e-25  # energies of scenes are 1e-8 and more
@@ -168,6 +171,19 @@ def runs_in_space(rng):
     return lists, [("out", body("P1", 1), []), ("fine", body("P2", FINER), ["--set=Adapt->Error Bound=estimated"])]
 
 
+def law(rng, contact, load, young):
+    """Adds a law to a foundation. @return whether it has steps with dents"""
+    kind = rng.choice(["springs", "hardening", "both", "friction", "all", "dents"])
+    if kind in ("springs", "both", "all"):
+        contact["Stiffness"] = repr(young * log_uniform(rng, -0.7, 1.7))
+    if kind in ("hardening", "both", "all", "dents"):
+        contact["Hardening"] = repr(young * log_uniform(rng, -1.5, 1))
+        contact.setdefault("Yield Stress", repr(load * log_uniform(rng, -0.7, 0.3)))
+    if kind in ("friction", "all"):
+        contact["Friction Bound"] = repr(load * log_uniform(rng, -1.5, 0))
+    return kind == "dents"
+
+
 @dataclasses.dataclass
 class Outcome:
     number: int
@@ -187,19 +203,24 @@ def run(options, folder, output, *more):
     return result, json.loads(summary.read_text()) if summary.exists() else None
 
 
-def plane_runs(rng, element, corners):
-    place, nx, ny, cut_x, cut_y = shape(rng)
-    ends = {"top": ("x", place(0, 1)[0], place(1 - cut_x / nx, 1)[0]), "right": ("y", 0.0, place(1, 1 - cut_y / ny)[1])}
-    lists, halves = deck(rng, ends, corners)
-    grids = [mesh_of(rng, element, place, nx, ny, cut_x, cut_y, halves), grid_of("P2", place, nx, ny, cut_x, cut_y, halves, FINER)]
-    finer = [f"--set=Adapt->Target Relative Error={TARGET}", f"--set=Adapt->Max Dofs={MOST_DOFS}"]
-    return lists, [("out", plane.Body(grids[0]), []), ("fine", plane.Body(grids[1]), finer)]
-
-
 def judge(options, number):
     rng = random.Random(f"{options.seed}/bounds/{number}")
-    element = "P1" if options.kind == "space" else ["P1", "P2", "Q1", "Q2"][number % 4]
-    lists, runs = runs_in_space(rng) if options.kind == "space" else plane_runs(rng, element, options.corners)
+    if options.kind == "space":
+        return judge_runs(options, number, "P1", *runs_in_space(rng))
+    element = ["P1", "P2", "Q1", "Q2"][number % 4]
+    place, nx, ny, cut_x, cut_y = shape(rng)
+    ends = {"top": ("x", place(0, 1)[0], place(1 - cut_x / nx, 1)[0]), "right": ("y", 0.0, place(1, 1 - cut_y / ny)[1])}
+    lists, halves = deck(rng, ends, options.corners)
+    laws = random.Random(f"{options.seed}/laws/{number}")
+    if options.laws and law(laws, lists["Contact"], load_of(lists), 1000.0):
+        return judge_dents(options, number, laws, lists, (place, nx, ny, cut_x, cut_y, halves))
+    grids = [mesh_of(rng, element, place, nx, ny, cut_x, cut_y, halves), grid_of("P2", place, nx, ny, cut_x, cut_y, halves, FINER)]
+    finer = [f"--set=Adapt->Target Relative Error={TARGET}", f"--set=Adapt->Max Dofs={MOST_DOFS}"]
+    return judge_runs(options, number, element, lists, [("out", plane.Body(grids[0]), []), ("fine", plane.Body(grids[1]), finer)])
+
+
+def judge_runs(options, number, element, lists, runs):
+    """The scene's run and that of its reference."""
     outcome = Outcome(number, element)
     folder = pathlib.Path(tempfile.mkdtemp(prefix=f"rpc_bounds_{number}_"))
     try:
@@ -228,6 +249,48 @@ def judge(options, number):
     return outcome
 
 
+def load_of(lists):
+    """About the pressure that a scene's loads or displacements make."""
+    of_traction = [abs(float(text.split("*")[0])) for entry in lists.get("Traction", {}).values() for text in entry.values()]
+    of_side = [1000 * abs(float(entry["Y"])) for entry in lists["Dirichlet"].values() if "Y" in entry]
+    return max([*of_traction, *of_side, 0.1])
+
+
+def judge_dents(options, number, rng, lists, shape_of):
+    """A step that leaves dents, and one with another load on nested triangles, on which these dents are the same function."""
+    outcome = Outcome(number, "P1")
+    for entry in (*lists.get("Traction", {}).values(), *(e for e in lists["Dirichlet"].values() if float(e.get("Y", 0)) != 0)):
+        entry["Y"] = f"{entry['Y']}*(t < 1.5 ? 1 : {rng.uniform(0.3, 1.3)!r})"
+    lists["Steps"] = {"Times": [1.0], "Checkpoint Every": 1}
+    folder = pathlib.Path(tempfile.mkdtemp(prefix=f"rpc_bounds_{number}_"))
+    try:
+        place, nx, ny, cut_x, cut_y, halves = shape_of
+        (folder / "body.msh").write_text(plane.Body(mesh_of(rng, "P1", place, nx // 2, ny // 2, cut_x // 2, cut_y // 2, halves)).msh(1.0))
+        (folder / "scene.yaml").write_text(adaptive.yaml({"scene": lists}))
+        result, summary = run(options, folder, "out")
+        if result.returncode == REFUSED or (summary and summary["energy_norm_squared"] < UNSTRAINED):
+            outcome.refused = True
+            return outcome
+        lists["Steps"] = {"Times": [1.0, 2.0], "Checkpoint Every": 1}
+        (folder / "scene.yaml").write_text(adaptive.yaml({"scene": lists}))
+        result, summary = run(options, folder, "out", "--restart", "--set=Adapt->Meshes=nested", f"--set=Adapt->Target Relative Error={STEPS_TARGET}",
+                              f"--set=Adapt->Max Dofs={MOST_DOFS}")
+        cycles = (summary or {}).get("adaptation", {}).get("cycles", [])
+        if not cycles or any(c["error_bound"]["reason"] for c in cycles):
+            outcome.complaint = f"dents: exit {result.returncode}: {result.stderr.strip()[-300:]}"
+            return outcome
+        last = cycles[-1]
+        half = last["relative_estimate"] ** 2 * summary["energy_norm_squared"] / 2
+        compare(outcome, cycles[0], {"error_bound": last["error_bound"], "error_estimate": {"energy_norm": math.sqrt(2 * half)}})
+    except Exception as error:  # a run that took too long, a file that is no JSON
+        outcome.complaint = f"{type(error).__name__}: {error}"[:300]
+    finally:
+        if options.keep:
+            shutil.copytree(folder, pathlib.Path(options.keep) / f"bounds_{options.seed}_{number:04d}", dirs_exist_ok=True)
+        shutil.rmtree(folder, ignore_errors=True)
+    return outcome
+
+
 def compare(outcome, summary, reference):
     low, high = summary["error_bound"]["energy_J"]
     left = reference["error_estimate"]["energy_norm"] ** 2 / 2
@@ -246,7 +309,7 @@ def compare(outcome, summary, reference):
 
 
 def main():
-    options = scenes.arguments(__doc__, 100, ("--corners", {"type": int, "default": 0}),
+    options = scenes.arguments(__doc__, 100, ("--corners", {"type": int, "default": 0}), ("--laws", {"type": int, "default": 0}),
                                ("--kind", {"choices": ["plane", "space"], "default": "plane"}))
     large = LARGE_IN_SPACE if options.kind == "space" else LARGE
     numbers = [options.only] if options.only is not None else range(options.scenes)

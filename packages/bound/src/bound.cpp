@@ -2,6 +2,8 @@
 #include "rpc/bound/bound.hpp"
 
 #include "boundary.hpp"
+#include "constant_field.hpp"
+#include "contact_terms.hpp"
 #include "descent.hpp"
 #include "galerkin.hpp"
 #include "rpc/core/timed.hpp"
@@ -11,7 +13,6 @@
 #include <Teuchos_Time.hpp>
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 namespace rpc::bound
 {
@@ -20,12 +21,22 @@ namespace
 
 constexpr const char *covered =
     "\"Adapt->Error Bound\" = guaranteed covers plane strain and plane stress of straight triangles or parallelograms, "
-    "and tetrahedra of order 1, on one rank, in one "
-    "step, on foundations that are rigid until they yield at one yield stress a side, without friction";
+    "and tetrahedra of order 1, on one rank, on foundations whose law is the same all along a side";
 
 void require_of_deck(const bool condition, const std::string &what)
 {
   RPC_REQUIRE(condition, "deck: " << covered << "; " << what << ". Write \"estimated\"");
+}
+
+/// @param model  seen at one time
+void require_same_everywhere(const analysis::Model &model)
+{
+  for (int i = 0; i < 3; ++i)
+    require_of_deck(value_everywhere(model.body_force[i]).has_value(), "\"Body Force\" depends on the place");
+  for (const auto &c : model.contact)
+    for (const auto &number : contact::law_parameters)
+      require_of_deck(value_everywhere(c.*number.field).has_value(),
+                      "\"" + c.path + "->" + number.name + "\" depends on the place");
 }
 
 /// What kernels over cells read of a problem.
@@ -37,81 +48,36 @@ CellInput cell_input(const analysis::Problem &problem, const analysis::Model &mo
   in.cells = d.mesh->cells;
   in.block = d.mesh->block;
   in.lame = fem::lame_table(d, model.materials);
-  for (int i = 0; i < 2; ++i) in.force[i] = model.body_force[i].constant;
+  for (int i = 0; i < 2; ++i) in.force[i] = value_everywhere(model.body_force[i]).value();
   in.facets = facets_of(d);
   in.reference = reference_stress(d.mesh->element);
   return in;
 }
 
-/// Moves u so that the contact points of a rigid foundation lie nowhere in it.                             doc/theory.md (13.3)
-void move_out(const ContactFacets &c, const int first, const contact::ContactNodes &points, const HostView<double *> &u)
+PointTractions tractions_of(const contact::ContactResult &contact)
 {
-  const auto node = to_host(points.node);
-  const auto direction = to_host(points.direction);
-  const auto gap = to_host(points.free_gap);
-  const auto depth = [&](const int i) {
-    return direction(i, 0) * u(dof(2, node(i), 0)) + direction(i, 1) * u(dof(2, node(i), 1)) - gap(i);
-  };
-  const auto move = [&](const int i, const double by) {
-    const double squared = direction(i, 0) * direction(i, 0) + direction(i, 1) * direction(i, 1);
-    for (int d = 0; d < 2 && squared > 0; ++d) u(dof(2, node(i), d)) -= by / squared * direction(i, d);
-  };
-  for (const auto &of_facet : c.point)
-    for (const int a : of_facet)
-      if (a >= 0) move(first + a, std::max(0., depth(first + a)));
-  if (c.order == 1) return;
-  for (const auto &of_facet : c.point) {
-    const OfFacet v{depth(first + of_facet[0]), depth(first + of_facet[1]), depth(first + of_facet[2])};
-    move(first + of_facet[2], std::max(0., v[2] - lowered_middle(v)));
-  }
-}
-
-/// Penetrations of a side at the nodes of its facets. What rounding leaves of a point that is held at the surface is 0.
-std::vector<OfFacet> depths(const ContactFacets &c, const int first, const contact::ContactNodes &points,
-                            const HostView<double *> &u)
-{
-  const auto node = to_host(points.node);
-  const auto normal = to_host(points.normal);
-  const auto gap = to_host(points.gap);
-  std::vector<OfFacet> all;
-  for (const auto &of_facet : c.point) {
-    OfFacet v{};
-    for (int a = 0; a < 3; ++a) {
-      if (of_facet[a] < 0) continue;
-      const int i = first + of_facet[a];
-      const double x = normal(i, 0) * u(dof(2, node(i), 0)), y = normal(i, 1) * u(dof(2, node(i), 1));
-      v[a] = x + y - gap(i);
-      if (std::abs(v[a]) <= 1e-14 * (std::abs(x) + std::abs(y) + std::abs(gap(i)))) v[a] = 0;
-    }
-    all.push_back(v);
-  }
-  return all;
+  const auto pressure = to_host(contact.pressure);
+  const auto along = to_host(contact.traction);
+  PointTractions on_host{HostView<double *>("rpc::bound::pressure", pressure.extent(0)),
+                         HostView<double **>("rpc::bound::friction", along.extent(0), 2)};
+  Kokkos::deep_copy(on_host.pressure, pressure);
+  for (std::size_t i = 0; i < along.extent(0); ++i)
+    for (int d = 0; d < 2; ++d) on_host.along(i, d) = along(i, d);
+  return on_host;
 }
 
 } // namespace
 
 void require_covered(const analysis::Task &task)
 {
-  require_of_deck(!task.has_steps(), "the deck has \"Steps\"");
   require_of_deck(task.model.kinematics != fem::Kinematics::axisymmetric, "the body is axisymmetric");
-  for (int i = 0; i < 3; ++i)
-    require_of_deck(task.model.body_force[i].is_constant(), "\"Body Force\" depends on the place");
-  for (const auto &condition : task.model.dirichlet) {
+  for (const auto &condition : task.model.dirichlet)
     require_of_deck(!condition.is_moved(), "a force moves the side of \"Dirichlet->" + condition.name + "\"");
-    for (const auto &u : condition.displacement)
-      require_of_deck(!u || u->is_constant(), "\"Dirichlet->" + condition.name + "\" depends on the place");
-  }
-  for (std::size_t k = 0; k < task.model.contact.size(); ++k) {
-    const auto &c = task.model.contact[k];
-    const auto field = [&](const int p) { return c.*contact::law_parameters[p].field; };
-    require_of_deck(field(0).is_constant(), "\"" + c.path + "->Yield Stress\" depends on the place");
-    require_of_deck(field(1).is_zero(), "\"" + c.path + "->Hardening\" is not 0");
-    require_of_deck(field(2).is_constant() && std::isinf(field(2).constant),
-                    "\"" + c.path + "->Stiffness\" is not inf");
-    require_of_deck(!c.has_friction(), "\"" + c.path + "\" has friction");
+  for (std::size_t k = 0; k < task.model.contact.size(); ++k)
     for (std::size_t other = 0; other < k; ++other)
-      require_of_deck(task.model.contact[other].side != c.side, "side \"" + c.side + "\" has several foundations");
-  }
+      require_of_deck(task.model.contact[other].side != task.model.contact[k].side,
+                      "side \"" + task.model.contact[k].side + "\" has several foundations");
+  require_same_everywhere(task.model.seen_at(task.has_steps() ? task.steps.times.front() : task.time));
 }
 
 void require_covered(const analysis::Problem &problem, const analysis::Step &step)
@@ -120,6 +86,7 @@ void require_covered(const analysis::Problem &problem, const analysis::Step &ste
   const analysis::Model model = problem.model().seen_at(step.time);
   require_of_deck(d.mesh->comm().getSize() == 1, "there are " + std::to_string(d.mesh->comm().getSize()) +
                                                      " ranks, and stars at their borders would need cells of both");
+  require_same_everywhere(model);
   require_of_deck(!step.support.by_contact_only, "contact alone holds the body");
   const auto projected = to_host(fem::projected_dilatation_table(d, model.materials));
   for (std::size_t b = 0; b < projected.extent(0); ++b)
@@ -136,11 +103,17 @@ void require_covered(const analysis::Problem &problem, const analysis::Step &ste
   require_of_deck(distortion <= 1e-9, "cells of " + d.mesh->element.name() +
                                           " are curved, or quadrilaterals whose opposite sides are not parallel (by " +
                                           shown(distortion) + " of a cell)");
-  boundary_of(problem, step, in.facets, HostView<double *>("rpc::bound::none", step.contact.size()));
+  boundary_of(problem, step, in.facets, {HostView<double *>("rpc::bound::none", step.contact.size()), {}});
 }
 
 namespace
 {
+
+EnergyBound::Of kind_of_friction(const contact::ContactOptions &options)
+{
+  const auto coefficient = value_everywhere(options.friction_coefficient);
+  return coefficient == 0. ? EnergyBound::Of::energy_and_friction : EnergyBound::Of::energy_and_fixed_friction;
+}
 
 EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolution &s,
                      const solver::LinearSolverOptions &options, const int steps)
@@ -148,40 +121,26 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   const fem::Discretization &d = problem.discretization();
   const analysis::Model model = problem.model().seen_at(s.step.time);
   const CellInput in = cell_input(problem, model);
-  const auto pressure = to_host(s.contact.pressure);
-  HostView<double *> on_host("rpc::bound::pressure", pressure.extent(0));
-  Kokkos::deep_copy(on_host, pressure);
-  const Boundary boundary = boundary_of(problem, s.step, in.facets, on_host);
+  const Boundary boundary = boundary_of(problem, s.step, in.facets, tractions_of(s.contact));
 
   EnergyBound bound;
+  for (std::size_t k = 0; k < boundary.sides.size(); ++k)
+    if (boundary.sides[k].friction.acts) bound.of = std::max(bound.of, kind_of_friction(model.contact[k]));
   const HostView<double *> moved = host_copy(*s.u);
   for (std::size_t k = 0; k < boundary.sides.size(); ++k)
-    if (contact::is_rigid(boundary.sides[k].limit))
-      move_out(boundary.sides[k], s.step.contact.first(k), s.step.contact, moved);
+    move_out(boundary.sides[k], s.step.contact.first(k), s.step.contact, moved);
   const RCP<const Vector> u = vector_of(moved, d.owned_dofs);
   Vector way(*u, Teuchos::Copy);
   way.update(-1, *s.u, 1);
   bound.moved = std::sqrt(std::max(0., fem::internal_work(d, model.materials, way).energy_norm_squared));
 
-  std::vector<std::vector<OfFacet>> pressures;
-  double yielding = 0, gap = 0;
-  for (std::size_t k = 0; k < boundary.sides.size(); ++k) {
-    const ContactFacets &c = boundary.sides[k];
-    const auto v = depths(c, s.step.contact.first(k), s.step.contact, moved);
-    pressures.push_back(fitted_pressure(c, v));
-    for (std::size_t e = 0; e < v.size(); ++e) {
-      if (contact::is_rigid(c.limit) && *std::max_element(v[e].begin(), v[e].end()) > 0)
-        bound.missing = "the body lies in a rigid foundation";
-      const ContactIntegrals of_facet = contact_integrals(c.order, v[e], pressures.back()[e], c.limit);
-      yielding += c.length[e] * of_facet.yielding;
-      gap += c.length[e] * of_facet.gap;
-    }
-  }
+  const ContactTerms contact = contact_terms(boundary.sides, s.step.contact, moved);
+  bound.missing = contact.missing;
   const double strain = fem::internal_work(d, model.materials, *u).energy_norm_squared;
   const double work = work_of(d, known_moments(in, boundary.tractions), in, *u);
-  bound.upper = strain / 2 - work + yielding;
+  bound.upper = strain / 2 - work + contact.energy;
 
-  const BoundaryTractions all = with_pressure(boundary.tractions, boundary.sides, pressures);
+  const BoundaryTractions all = with_contact(boundary.tractions, boundary.sides, contact.tractions);
   const double start = Teuchos::Time::wallTime();
   const Solved galerkin = galerkin_solution(problem, s, options, in, all);
   bound.solve_seconds = Teuchos::Time::wallTime() - start;
@@ -205,7 +164,7 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   double energy = left.energy;
   for (int step = steps; step >= 0; --step) {
     const double norm = std::sqrt(2 * energy) + lift;
-    bound.steps.insert(bound.steps.begin(), norm * norm / 2 + gap);
+    bound.steps.insert(bound.steps.begin(), norm * norm / 2 + contact.gap);
     if (step > 0) energy += falls[step - 1];
   }
   const double best = bound.steps.back();
@@ -217,6 +176,18 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
 }
 
 } // namespace
+
+const char *name_of(const EnergyBound::Of of)
+{
+  switch (of) {
+  case EnergyBound::Of::energy:
+    return "J";
+  case EnergyBound::Of::energy_and_friction:
+    return "J and friction's work";
+  default:
+    return "J and friction's work, its limits kept at those of this solution";
+  }
+}
 
 EnergyBound energy_bound(const analysis::Problem &problem, const analysis::StepSolution &solution,
                          const solver::LinearSolverOptions &options, const int steps)

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "boundary.hpp"
 
+#include "constant_field.hpp"
 #include "gauss.hpp"
+#include "rpc/contact/law/friction.hpp"
 #include "rpc/core/evaluate.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <sstream>
@@ -76,6 +79,13 @@ struct OnHost {
   }
 };
 
+/// What the elements make of values at the ends and in the middle of a facet, at a point of it.
+double at_point(const int order, const OfFacet &g, const double s)
+{
+  if (order == 1) return g[0] + s * (g[1] - g[0]);
+  return g[0] * (1 - s) * (1 - 2 * s) + g[1] * s * (2 * s - 1) + g[2] * 4 * s * (1 - s);
+}
+
 /// Whether the polynomials that stand for a traction on the facets of a side are that traction, between their points too. What they lack, such
 /// as half of a jump within a facet, no stress would balance, and J of the exact solution could lie below its bound.
 /// @param coefficients  (facets of the mesh, degree, component) times lengths [N]
@@ -111,6 +121,29 @@ void require_represented_load(const OnHost &host, const fem::VectorField &tracti
               "deck: \"Adapt->Error Bound\" = guaranteed covers loads that are smooth within each cell; \"Traction->"
                   << name << "\" is not, at (" << x(at, 0) << ", " << x(at, 1)
                   << "). Let cells end where it jumps or bends, take smaller ones, or write \"estimated\"");
+}
+
+/// Whether a prescribed displacement between the nodes is what the elements make of it there.
+void require_represented_displacement(const ScalarField &field, const OnHost &host, const std::vector<LO> &facets,
+                                      const std::string &name)
+{
+  if (field.is_constant()) return;
+  Gauss rule = gauss(OnHost::points_of_fields);
+  rule.point.insert(rule.point.begin(), {0, 1, 0.5}); // the nodes
+  const std::size_t n = rule.point.size();
+  const HostPoints x = host.points(facets, rule);
+  const auto u = evaluate(field, x, "Dirichlet->" + name, host.mesh.comm());
+  double largest = 0;
+  for (std::size_t q = 0; q < u.extent(0); ++q) largest = std::max(largest, std::abs(u(q)));
+  for (std::size_t e = 0; e < facets.size(); ++e)
+    for (std::size_t q = 0; q < n; ++q) {
+      const double here = at_point(host.mesh.element.order, {u(e * n), u(e * n + 1), u(e * n + 2)}, rule.point[q]);
+      RPC_REQUIRE(std::abs(u(e * n + q) - here) <= 1e-10 * largest,
+                  "deck: \"Adapt->Error Bound\" = guaranteed covers displacements that the elements represent; "
+                  "\"Dirichlet->"
+                      << name << "\" is not, at (" << x(e * n + q, 0) << ", " << x(e * n + q, 1)
+                      << "). Write \"estimated\"");
+    }
 }
 
 /// load(f, j, i) += the coefficients of the tractions on a side.
@@ -157,10 +190,7 @@ void require_represented_gap(const contact::ContactOptions &options, const OnHos
   if (!options.obstacle.exists()) field = evaluate(options.gap, x, options.path + "->Gap", host.mesh.comm(), true);
   for (std::size_t e = 0; e < c.facet.size(); ++e)
     for (int q = 0; q < num_points; ++q) {
-      const double s = rule.point[q];
-      const OfFacet &g = gap[e];
-      const double here = c.order == 1 ? g[0] + s * (g[1] - g[0])
-                                       : g[0] * (1 - s) * (1 - 2 * s) + g[1] * s * (2 * s - 1) + g[2] * 4 * s * (1 - s);
+      const double here = at_point(c.order, gap[e], rule.point[q]);
       const std::size_t at = e * num_points + q;
       const auto distance =
           options.obstacle.exists()
@@ -173,22 +203,87 @@ void require_represented_gap(const contact::ContactOptions &options, const OnHos
     }
 }
 
+/// A number of the law of a side, the same everywhere.
+double law(const contact::ContactOptions &options, const int parameter)
+{
+  return value_everywhere(options.*contact::law_parameters[parameter].field)
+      .value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+OfFacet not_negative(OfFacet b)
+{
+  for (double &coefficient : b) coefficient = std::max(0., coefficient);
+  return b;
+}
+
+/// (points) Of points with friction.
+DeviceView<char *> where_friction_acts(const contact::ContactNodes &points)
+{
+  const DeviceView<char *> acting("rpc::bound::acting", points.size());
+  const contact::FrictionPoints friction = points.friction;
+  Kokkos::parallel_for(
+      "rpc::bound::acting", device_range(points.size()),
+      KOKKOS_LAMBDA(const LO i) { acting(i) = contact::acts(friction(i)); });
+  Kokkos::fence();
+  return acting;
+}
+
+/// What friction is at contact points, along the side's tangent; 0 where there is none.
+struct FrictionAtPoints {
+  std::vector<double> from, traction;
+  std::vector<char> acts;
+
+  FrictionAtPoints(const contact::ContactNodes &points, const HostView<double **> &q)
+      : from(points.size(), 0.), traction(from), acts(points.size(), 0)
+  {
+    if (!points.friction.exists()) return;
+    const auto any = to_host(where_friction_acts(points));
+    const auto normal = to_host(points.normal), start = to_host(points.friction.from);
+    for (LO i = 0; i < points.size(); ++i) {
+      const auto along = tangent_of({normal(i, 0), normal(i, 1)});
+      for (int d = 0; d < 2; ++d) from[i] += along[d] * start(i, d);
+      for (int d = 0; d < 2 && q.extent(0) > 0; ++d) traction[i] += along[d] * q(i, d);
+      acts[i] = any(i);
+    }
+  }
+};
+
+/// Friction at a facet whose last point has been added to the side.
+void add_friction(const contact::ContactOptions &options, const FrictionAtPoints &points, const int first,
+                  const std::array<int, 3> &of_facet, const OfFacet &pressure, ContactFacets &c)
+{
+  const double mu = law(options, 3), s_0 = law(options, 4), s_max = law(options, 5);
+  OfFacet q{}, from{}, s{};
+  for (int a = 0; a <= c.order; ++a) {
+    const int i = first + of_facet[a];
+    q[a] = points.traction[i];
+    from[a] = points.from[i];
+    s[a] = contact::friction_bound(pressure[a], {mu, s_0, s_max});
+  }
+  s = mu > 0 ? not_negative(bernstein(c.order, s)) : OfFacet{s[0], s[0], s[0]};
+  for (double &coefficient : s) coefficient = std::min(coefficient, s_max);
+  c.friction.traction.push_back(q);
+  c.friction.slip_from.push_back(from);
+  c.friction.limit_of.push_back(s);
+}
+
 /// What the contact law, the pressures and the normals are at the facets of a side.
 ContactFacets contact_side(const analysis::Problem &problem, const analysis::Model &model, const analysis::Step &step,
-                           const OnHost &host, const int k, const HostView<double *> &pressure,
+                           const OnHost &host, const int k, const PointTractions &solution,
                            const HostView<char *[2]> &prescribed)
 {
   const contact::ContactOptions &options = model.contact[k];
   const contact::ContactNodes &points = step.contact;
   const auto node = to_host(points.node);
-  const auto weight = to_host(points.weight), gap = to_host(points.gap);
+  const auto weight = to_host(points.weight), gap = to_host(points.gap), dent = to_host(points.dent);
   const auto normal = to_host(points.normal), direction = to_host(points.direction);
   const auto fixed = to_host(points.fixed);
   const auto block = to_host(host.mesh.block);
   const auto lame = to_host(fem::lame_table(problem.discretization(), problem.model().materials));
   ContactFacets c;
   c.order = host.mesh.element.order;
-  c.limit = (options.*contact::law_parameters[0].field).constant;
+  c.rise = law(options, 1);
+  c.spring = 1 / law(options, 2);
   c.facet = host.facets_of(host.mesh.side(options.side, options.path));
   std::map<LO, int> point_at;
   const int first = points.first(k), last = points.first(k + 1);
@@ -196,9 +291,15 @@ ContactFacets contact_side(const analysis::Problem &problem, const analysis::Mod
   c.free.resize(last - first);
   for (int i = first; i < last; ++i) {
     c.free[i - first] = !fixed(i) && weight(i) > 0;
-    c.force.push_back(weight(i) * pressure(i));
+    c.force.push_back(weight(i) * solution.pressure(i));
   }
   c.place.resize(last - first);
+  const FrictionAtPoints friction(points, solution.along);
+  c.friction.acts = options.has_friction() && points.friction.anywhere;
+  for (int i = first; i < last; ++i) {
+    c.friction.force.push_back(weight(i) * friction.traction[i]);
+    c.friction.free.push_back(friction.acts[i] && weight(i) > 0);
+  }
   std::vector<OfFacet> gaps;
   std::map<int, std::set<int>> blocks_at; // of the points
   std::array<double, 2> along{};
@@ -227,12 +328,19 @@ ContactFacets contact_side(const analysis::Problem &problem, const analysis::Mod
                   not_covered(options, "a node has no direction"));
     }
     c.point.push_back(of_facet);
-    OfFacet p{};
+    const double xi = law(options, 0);
+    OfFacet p{}, w{}, limit{};
     for (int a = 0; a <= c.order; ++a) {
-      p[a] = pressure(first + of_facet[a]);
+      p[a] = solution.pressure(first + of_facet[a]);
+      w[a] = dent(first + of_facet[a]);
+      limit[a] = xi + c.rise * w[a];
       blocks_at[of_facet[a]].insert(block(host.cell(f, 0)));
     }
     c.pressure.push_back(p);
+    c.dent.push_back(w);
+    c.limit_of.push_back({xi, xi, xi});
+    if (c.rise > 0 && !contact::is_rigid(xi)) c.limit_of.back() = not_negative(bernstein(c.order, limit));
+    add_friction(options, friction, first, of_facet, p, c);
     gaps.push_back(g);
     const double lambda = lame(block(host.cell(f, 0)), 0), mu = lame(block(host.cell(f, 0)), 1);
     c.modulus = mu * (3 * lambda + 2 * mu) / (lambda + mu);
@@ -248,7 +356,7 @@ ContactFacets contact_side(const analysis::Problem &problem, const analysis::Mod
 } // namespace
 
 Boundary boundary_of(const analysis::Problem &problem, const analysis::Step &step, const Facets &facets,
-                     const HostView<double *> &pressure)
+                     const PointTractions &solution)
 {
   const analysis::Model model = problem.model().seen_at(step.time);
   const OnHost host(*problem.discretization().mesh, facets);
@@ -262,9 +370,12 @@ Boundary boundary_of(const analysis::Problem &problem, const analysis::Step &ste
         "deck: \"Adapt->Error Bound\" = guaranteed covers displacements that are prescribed on sides; \"Dirichlet->"
             << condition.name << "\" prescribes one at points, where the exact solution has no force. Write "
             << "\"estimated\"");
-    for (const LO f : host.facets_of(*side))
-      for (int i = 0; i < 2; ++i)
-        if (condition.displacement[i]) prescribed(f, i) = 1;
+    const std::vector<LO> facets = host.facets_of(*side);
+    for (int i = 0; i < 2; ++i) {
+      if (!condition.displacement[i]) continue;
+      require_represented_displacement(*condition.displacement[i], host, facets, condition.name);
+      for (const LO f : facets) prescribed(f, i) = 1;
+    }
   }
   Boundary b;
   b.tractions.known = DeviceView<char **>("rpc::bound::known", facets.size(), 2);
@@ -281,12 +392,12 @@ Boundary boundary_of(const analysis::Problem &problem, const analysis::Step &ste
       for (int i = 0; i < 2; ++i) to(f, j, i) = load(f, j, i);
   Kokkos::deep_copy(b.tractions.load, to);
   for (int k = 0; k < step.contact.num_sides(); ++k)
-    b.sides.push_back(contact_side(problem, model, step, host, k, pressure, prescribed));
+    b.sides.push_back(contact_side(problem, model, step, host, k, solution, prescribed));
   return b;
 }
 
-BoundaryTractions with_pressure(const BoundaryTractions &loads, const std::vector<ContactFacets> &sides,
-                                const std::vector<std::vector<OfFacet>> &pressure)
+BoundaryTractions with_contact(const BoundaryTractions &loads, const std::vector<ContactFacets> &sides,
+                               const std::vector<SideTractions> &contact)
 {
   BoundaryTractions all = loads;
   all.load = DeviceView<double ***>("rpc::bound::load", loads.load.extent(0), loads.load.extent(1), 2);
@@ -294,9 +405,13 @@ BoundaryTractions with_pressure(const BoundaryTractions &loads, const std::vecto
   Kokkos::deep_copy(load, loads.load);
   for (std::size_t s = 0; s < sides.size(); ++s)
     for (std::size_t e = 0; e < sides[s].facet.size(); ++e) {
-      const OfFacet p = legendre_of(sides[s].order, pressure[s][e]);
+      const OfFacet p = legendre_of(sides[s].order, contact[s].pressure[e]);
+      const bool rubs = sides[s].friction.acts;
+      const OfFacet q = rubs ? legendre_of(sides[s].order, contact[s].friction[e]) : OfFacet{};
+      const std::array<double, 2> &normal = sides[s].normal[e], along = tangent_of(normal);
       for (int j = 0; j <= sides[s].order; ++j)
-        for (int i = 0; i < 2; ++i) load(sides[s].facet[e], j, i) -= sides[s].normal[e][i] * sides[s].length[e] * p[j];
+        for (int i = 0; i < 2; ++i)
+          load(sides[s].facet[e], j, i) -= sides[s].length[e] * (normal[i] * p[j] + along[i] * q[j]);
     }
   Kokkos::deep_copy(all.load, load);
   return all;

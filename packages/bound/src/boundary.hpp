@@ -17,15 +17,22 @@ struct Boundary {
   std::vector<ContactFacets> sides; ///< in the order of the contact sides
 };
 
-/// @param pressure  (contact points) [Pa]
+/// Of a solution, on the host.
+struct PointTractions {
+  HostView<double *> pressure; ///< (contact points) [Pa]
+  HostView<double **> along;   ///< (contact points, 2) friction; empty where there is none [Pa]
+};
 /// @throws rpc::Error (bad_input) where the sides are not covered
 Boundary boundary_of(const analysis::Problem &problem, const analysis::Step &step, const Facets &facets,
-                     const HostView<double *> &pressure);
+                     const PointTractions &solution);
 
-/// The same tractions with those of contact pressures.
-/// @param pressure  (sides; facets) Bernstein coefficients [Pa]
-BoundaryTractions with_pressure(const BoundaryTractions &loads, const std::vector<ContactFacets> &sides,
-                                const std::vector<std::vector<OfFacet>> &pressure);
+/// Tractions of contact on the facets of a side: Bernstein coefficients [Pa].
+struct SideTractions {
+  std::vector<OfFacet> pressure, friction; ///< the latter empty where there is none
+};
+/// The same tractions with those of contact.
+BoundaryTractions with_contact(const BoundaryTractions &loads, const std::vector<ContactFacets> &sides,
+                               const std::vector<SideTractions> &contact);
 
 /// A number as messages show it, small ones too.
 std::string shown(double value);

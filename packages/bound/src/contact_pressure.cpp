@@ -2,187 +2,70 @@
 #include "contact_pressure.hpp"
 
 #include "gauss.hpp"
-#include "least_in_box.hpp"
 #include "rpc/contact/law/foundation.hpp"
+#include "traction_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace rpc::bound
 {
 namespace
 {
 
-/// Values of Bernstein's polynomials and of the element's functions at a point of [0, 1].
-OfFacet bernstein_at(const int order, const double x)
-{
-  if (order == 1) return {1 - x, x, 0};
-  return {(1 - x) * (1 - x), 2 * x * (1 - x), x * x};
-}
-OfFacet shape_at(const int order, const double x)
-{
-  if (order == 1) return {1 - x, x, 0};
-  return {(1 - x) * (1 - 2 * x), x * (2 * x - 1), 4 * x * (1 - x)};
-}
+/// A polynomial of degree 2 on [0, 1] by its Bernstein coefficients.
+struct Polynomial {
+  double c0, c1, c2;
 
-using Table = std::array<OfFacet, 3>;
-
-/// int of the products of two families of functions.
-template <class First, class Second>
-Table products(const int order, const First &first, const Second &second)
-{
-  Table t{};
-  const Gauss rule = gauss(3);
-  for (std::size_t q = 0; q < rule.point.size(); ++q) {
-    const OfFacet a = first(order, rule.point[q]), b = second(order, rule.point[q]);
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) t[i][j] += rule.weight[q] * a[i] * b[j];
-  }
-  return t;
-}
-
-/// The quadratic function of the fit: x . H x/2 - f . x for Bernstein coefficients x, facet by facet.
-class Fit
-{
-public:
-  Fit(const ContactFacets &c, const std::vector<OfFacet> &v)
-      : c_(c), per_facet_(c.order + 1), forces_(products(c.order, shape_at, bernstein_at)),
-        mass_(products(c.order, bernstein_at, bernstein_at))
+  Polynomial(const int order, const OfFacet &b)
+      : c0(b[0]), c1(order == 1 ? b[1] - b[0] : 2 * (b[1] - b[0])), c2(order == 1 ? 0 : b[0] - 2 * b[1] + b[2])
   {
-    list_hats();
-    const std::size_t n = c.facet.size() * per_facet_;
-    f_.assign(n, 0.);
-    scale_.assign(n, 0.);
-    std::vector<double> wanted(c.force);
-    for (std::size_t i = 0; i < wanted.size(); ++i)
-      if (!c.free[i]) wanted[i] = 0;
-    add_weighted(wanted);
-    add_transposed(wanted, f_);
-    start_.assign(n, 0.);
-    low_bound_.assign(n, 0.);
-    high_bound_.assign(n, c.limit);
-    for (std::size_t e = 0; e < c.facet.size(); ++e) {
-      OfFacet near = bernstein(c.order, c.pressure[e]);
-      for (double &b : near) b = std::clamp(b, 0., c.limit);
-      for (int i = 0; i < per_facet_; ++i) {
-        double own = 0;
-        start_[e * per_facet_ + i] = near[i];
-        for (int j = 0; j < per_facet_; ++j) {
-          f_[e * per_facet_ + i] += near_weight(e) * mass_[i][j] * near[j];
-          f_[e * per_facet_ + i] += c.length[e] * forces_[j][i] * v[e][j];
-          own += forces_[j][i] * forces_[j][i];
-        }
-        scale_[e * per_facet_ + i] =
-            1 / std::sqrt(c.length[e] * c.length[e] * own / c.modulus + near_weight(e) * mass_[i][i]);
-      }
-    }
   }
-
-  /// y <- H x.
-  void apply(const std::vector<double> &x, std::vector<double> &y) const
+  Polynomial(const double a, const double b, const double c) : c0(a), c1(b), c2(c) {}
+  double operator()(const double x) const { return c0 + x * (c1 + x * c2); }
+  /// This + a other.
+  Polynomial plus(const double a, const Polynomial &other) const
   {
-    std::vector<double> force(c_.force.size(), 0.);
-    for (std::size_t e = 0; e < c_.facet.size(); ++e)
-      for (int a = 0; a < per_facet_; ++a)
-        for (int j = 0; j < per_facet_; ++j)
-          if (c_.free[c_.point[e][a]]) force[c_.point[e][a]] += c_.length[e] * forces_[a][j] * x[e * per_facet_ + j];
-    add_weighted(force);
-    y.assign(x.size(), 0.);
-    add_transposed(force, y);
-    for (std::size_t e = 0; e < c_.facet.size(); ++e)
-      for (int i = 0; i < per_facet_; ++i)
-        for (int j = 0; j < per_facet_; ++j)
-          y[e * per_facet_ + i] += near_weight(e) * mass_[i][j] * x[e * per_facet_ + j];
+    return {c0 + a * other.c0, c1 + a * other.c1, c2 + a * other.c2};
   }
-  const std::vector<double> &right_side() const { return f_; }
-  const std::vector<double> &scale() const { return scale_; } ///< that makes about 1 of the diagonal
-  const std::vector<double> &start() const { return start_; }
-  const std::vector<double> &low() const { return low_bound_; }
-  const std::vector<double> &high() const { return high_bound_; }
-
-private:
-  double near_weight(const std::size_t e) const
-  {
-    constexpr double share = 0.1; // how much the pressure at the nodes counts beside their forces
-    return share * c_.length[e] * c_.length[e] / c_.modulus;
-  }
-  /// Intervals of hats on all levels, from about two nodes for each down to one for all.
-  void list_hats()
-  {
-    low_ = std::numeric_limits<double>::infinity();
-    double high = -low_;
-    int count = 0;
-    for (std::size_t i = 0; i < c_.place.size(); ++i)
-      if (c_.free[i]) {
-        low_ = std::min(low_, c_.place[i]);
-        high = std::max(high, c_.place[i]);
-        ++count;
-      }
-    span_ = high - low_;
-    for (int n = count / 2; n >= 1 && span_ > 0; n /= 2) intervals_.push_back(n);
-  }
-  /// force <- S force, with S the sum over all levels of the products with hats, and the nodes themselves.
-  void add_weighted(std::vector<double> &force) const
-  {
-    constexpr double of_all = 100; // of the force and moment of the whole side, squared
-    std::vector<double> sum(force);
-    for (const int n : intervals_) {
-      std::vector<double> hat(n + 2, 0.);
-      const auto at = [&](const std::size_t i, int &k) {
-        const double x = n * (c_.place[i] - low_) / span_;
-        k = std::clamp(static_cast<int>(x), 0, n - 1);
-        return x - k;
-      };
-      int k = 0;
-      for (std::size_t i = 0; i < force.size(); ++i) {
-        if (!c_.free[i]) continue;
-        const double x = at(i, k);
-        hat[k] += (1 - x) * force[i];
-        hat[k + 1] += x * force[i];
-      }
-      for (std::size_t i = 0; i < force.size(); ++i) {
-        if (!c_.free[i]) continue;
-        const double x = at(i, k);
-        sum[i] += (n == 1 ? of_all : 1) * ((1 - x) * hat[k] + x * hat[k + 1]);
-      }
-    }
-    force = sum;
-  }
-  /// y += what the coefficients do to forces at the points, transposed.
-  void add_transposed(const std::vector<double> &force, std::vector<double> &y) const
-  {
-    for (std::size_t e = 0; e < c_.facet.size(); ++e)
-      for (int a = 0; a < per_facet_; ++a)
-        for (int j = 0; j < per_facet_; ++j)
-          if (c_.free[c_.point[e][a]])
-            y[e * per_facet_ + j] += c_.length[e] * forces_[a][j] * force[c_.point[e][a]] / c_.modulus;
-  }
-
-  const ContactFacets &c_;
-  int per_facet_;
-  Table forces_, mass_; // of shape and Bernstein functions, of Bernstein functions
-  double low_ = 0, span_ = 0;
-  std::vector<int> intervals_;
-  std::vector<double> f_, scale_, start_, low_bound_, high_bound_;
 };
 
-/// Where a polynomial of degree 2 changes its sign within [0, 1], with both ends.
-std::vector<double> pieces_of(const double c0, const double c1, const double c2)
+/// Parts of [0, 1] within which none of some polynomials changes its sign.
+class Parts
 {
-  std::vector<double> at{0};
-  const auto add = [&](const double x) {
-    if (x > 0 && x < 1) at.push_back(x);
-  };
-  const double discriminant = c1 * c1 - 4 * c2 * c0;
-  if (discriminant > 0) {
-    const double q = -0.5 * (c1 + std::copysign(std::sqrt(discriminant), c1));
-    if (c2 != 0) add(q / c2);
-    if (q != 0) add(c0 / q);
+public:
+  void end_at_roots_of(const Polynomial &p)
+  {
+    const double discriminant = p.c1 * p.c1 - 4 * p.c2 * p.c0;
+    if (!(discriminant > 0)) return;
+    const double q = -0.5 * (p.c1 + std::copysign(std::sqrt(discriminant), p.c1));
+    if (p.c2 != 0) add(q / p.c2);
+    if (q != 0) add(p.c0 / q);
   }
-  at.push_back(1);
-  std::sort(at.begin(), at.end());
-  return at;
+  /// Sum of w f(x), exact where f is a polynomial of degree 5 within each part.
+  template <class Function>
+  void integrate(const Function &f)
+  {
+    std::sort(at_.begin(), at_.end());
+    const Gauss rule = gauss(3);
+    for (std::size_t k = 0; k + 1 < at_.size(); ++k)
+      for (std::size_t q = 0; q < rule.point.size(); ++q)
+        f(at_[k] + rule.point[q] * (at_[k + 1] - at_[k]), rule.weight[q] * (at_[k + 1] - at_[k]));
+  }
+
+private:
+  void add(const double x)
+  {
+    if (x > 0 && x < 1) at_.push_back(x);
+  }
+  std::vector<double> at_{0, 1};
+};
+
+/// Bernstein coefficients between bounds.
+OfFacet clamped(OfFacet b, const OfFacet &low, const OfFacet &high)
+{
+  for (int i = 0; i < 3; ++i) b[i] = std::clamp(b[i], low[i], high[i]);
+  return b;
 }
 
 } // namespace
@@ -201,32 +84,64 @@ OfFacet legendre_of(const int order, const OfFacet &b)
 
 std::vector<OfFacet> fitted_pressure(const ContactFacets &c, const std::vector<OfFacet> &v)
 {
-  const std::vector<double> x = least_in_box(Fit(c, v), 1e-20);
-  std::vector<OfFacet> p(c.facet.size());
-  for (std::size_t e = 0; e < p.size(); ++e)
-    for (int i = 0; i <= c.order; ++i) p[e][i] = x[e * (c.order + 1) + i];
-  return p;
+  WantedTraction wanted{c.force, c.free, {}, v, {}, {}, c.spring, c.rise};
+  for (std::size_t e = 0; e < c.facet.size(); ++e) {
+    wanted.near.push_back(bernstein(c.order, c.pressure[e]));
+    wanted.low.push_back({});
+    wanted.high.push_back(c.limit_of[e]);
+  }
+  return fitted_traction(c, wanted);
 }
 
-ContactIntegrals contact_integrals(const int order, const OfFacet &v, const OfFacet &p, const double limit)
+std::vector<OfFacet> fitted_friction(const ContactFacets &c, const std::vector<OfFacet> &slip)
 {
-  const double c0 = v[0], c1 = order == 1 ? v[1] - v[0] : -3 * v[0] - v[1] + 4 * v[2],
-               c2 = order == 1 ? 0 : 2 * v[0] + 2 * v[1] - 4 * v[2];
-  const Gauss rule = gauss(3);
-  const std::vector<double> at = pieces_of(c0, c1, c2);
+  const FrictionFacets &f = c.friction;
+  WantedTraction wanted{f.force, f.free, {}, slip, {}, f.limit_of, 0, 0};
+  for (std::size_t e = 0; e < c.facet.size(); ++e) {
+    const OfFacet &s = f.limit_of[e];
+    wanted.low.push_back({-s[0], -s[1], -s[2]});
+    wanted.near.push_back(clamped(bernstein(c.order, f.traction[e]), wanted.low[e], s));
+  }
+  return fitted_traction(c, wanted);
+}
+
+ContactIntegrals contact_integrals(const int order, const OfFacet &v, const OfFacet &p, const NormalLaw &law)
+{
+  const Polynomial depth(order, bernstein(order, v)), pressure(order, p);
+  const bool rigid = contact::is_rigid(*std::max_element(law.limit.begin(), law.limit.end()));
+  Parts parts; // within which the integrands are polynomials of degree 4
+  parts.end_at_roots_of(depth);
+  const Polynomial limit(order, rigid ? OfFacet{} : law.limit);
+  if (!rigid) {
+    parts.end_at_roots_of(limit);
+    parts.end_at_roots_of(depth.plus(-law.spring, limit));
+    parts.end_at_roots_of(pressure.plus(-1, limit));
+  }
   ContactIntegrals sum;
-  for (std::size_t k = 0; k + 1 < at.size(); ++k)
-    for (std::size_t q = 0; q < rule.point.size(); ++q) {
-      const double x = at[k] + rule.point[q] * (at[k + 1] - at[k]), w = rule.weight[q] * (at[k + 1] - at[k]);
-      const OfFacet b = bernstein_at(order, x);
-      const double depth = c0 + x * (c1 + x * c2), pressure = b[0] * p[0] + b[1] * p[1] + b[2] * p[2];
-      if (!(depth > 0)) {
-        sum.gap -= w * pressure * depth;
-      } else if (!contact::is_rigid(limit)) {
-        sum.yielding += w * limit * depth;
-        sum.gap += w * (limit - pressure) * depth;
-      }
+  parts.integrate([&](const double x, const double w) {
+    const contact::Foundation f{rigid ? law.limit[0] : std::max(0., limit(x)), law.rise, law.spring};
+    const double deep = depth(x), p_here = std::max(0., pressure(x));
+    if (rigid && law.spring == 0) { // there is no penetration
+      sum.gap += w * p_here * std::max(0., -deep);
+      return;
     }
+    const double energy = contact::foundation_energy(deep, f);
+    sum.energy += w * energy;
+    sum.gap += w * std::max(0., energy + contact::conjugate_energy(p_here, f) - p_here * deep);
+  });
+  return sum;
+}
+
+ContactIntegrals friction_integrals(const int order, const OfFacet &slip, const OfFacet &traction, const OfFacet &limit)
+{
+  const Polynomial e(order, bernstein(order, slip)), q(order, traction), s(order, limit);
+  Parts parts;
+  parts.end_at_roots_of(e);
+  ContactIntegrals sum;
+  parts.integrate([&](const double x, const double w) {
+    sum.energy += w * s(x) * std::abs(e(x));
+    sum.gap += w * std::max(0., s(x) * std::abs(e(x)) - q(x) * e(x));
+  });
   return sum;
 }
 

@@ -13,14 +13,28 @@ namespace rpc::bound
 /// Three numbers of a facet: at its ends and in the middle, or the coefficients of Bernstein's polynomials. With order 1 the first two.
 using OfFacet = std::array<double, 3>;
 
+/// Friction along a contact side, whose limits s are given.                                            doc/theory.md (13.12)
+struct FrictionFacets {
+  bool acts = false;              ///< else nothing below is there
+  std::vector<OfFacet> limit_of;  ///< (facets) Bernstein coefficients of s [Pa]
+  std::vector<OfFacet> traction;  ///< (facets) q at the nodes, along the tangent [Pa]
+  std::vector<OfFacet> slip_from; ///< (facets) at the nodes, what slip counts from, along the tangent [m]
+  std::vector<double> force;      ///< (points) weight times q [N]
+  std::vector<char> free;         ///< (points) whether it can act there
+};
+
 /// A straight contact side.
 struct ContactFacets {
   int order = 1;
-  double limit = 0;                          ///< yield stress xi [Pa], may be infinite
+  std::vector<OfFacet> limit_of; ///< (facets) Bernstein coefficients of the yield limit xi + H w [Pa], may be infinite
+  double rise = 0;               ///< H [Pa/m]
+  double spring = 0;             ///< c of the foundation's springs [m/Pa]
+  FrictionFacets friction;
   double modulus = 1;                        ///< E of the body [Pa]
   std::vector<LO> facet;                     ///< numbers of the facets
   std::vector<double> length;                ///< (facets) [m]
   std::vector<std::array<double, 2>> normal; ///< (facets) of the contact law
+  std::vector<OfFacet> dent;                 ///< (facets) w of earlier steps at the nodes [m]
   std::vector<std::array<int, 3>>
       point;                 ///< (facets) contact points at both ends and in the middle, numbered from 0; the last -1
   std::vector<double> place; ///< (points) along the side [m]
@@ -34,17 +48,38 @@ OfFacet bernstein(int order, const OfFacet &at_nodes);
 /// Legendre coefficients from those of Bernstein.
 OfFacet legendre_of(int order, const OfFacet &bernstein);
 
-/// A pressure in [0, xi] whose forces are near to those of the contact points in the norm of their work, and that does not press where
-/// the body is off the foundation.                                                                     doc/theory.md (13.4)
+/// The unit vector along a side, from the law's normal.
+inline std::array<double, 2> tangent_of(const std::array<double, 2> &normal)
+{
+  return {-normal[1], normal[0]};
+}
+
+/// A pressure that the law admits, whose forces are near to those of the contact points in the norm of their work, and that does not press
+/// where the body is off the foundation.                                                               doc/theory.md (13.4)
 /// @param v  (facets) penetration at the nodes [m]
 /// @return (facets) Bernstein coefficients [Pa]
 std::vector<OfFacet> fitted_pressure(const ContactFacets &c, const std::vector<OfFacet> &v);
 
-/// Integrals over a facet of unit length: of xi v+, and of (xi - p) v+ + p v-. v <= 0 where xi is infinite.
-struct ContactIntegrals {
-  double yielding = 0, gap = 0;
+/// A traction along the side within the limits of friction, likewise.
+/// @param slip  (facets) at the nodes [m]
+std::vector<OfFacet> fitted_friction(const ContactFacets &c, const std::vector<OfFacet> &slip);
+
+/// The law of a facet: Bernstein coefficients of its yield limit, H and c.
+struct NormalLaw {
+  OfFacet limit{};
+  double rise = 0, spring = 0;
 };
-ContactIntegrals contact_integrals(int order, const OfFacet &v, const OfFacet &p, double limit);
+
+/// Integrals over a facet of unit length of the energy of the law, psi(v) or s |e|, and of what the pair misses of it: psi(v) + psi*(p) - p v, or
+/// s |e| - q e.                                                                                         doc/theory.md (13.11)
+struct ContactIntegrals {
+  double energy = 0, gap = 0;
+};
+/// v <= 0 where the foundation is rigid.
+/// @param p  Bernstein coefficients, those of an admissible pressure
+ContactIntegrals contact_integrals(int order, const OfFacet &v, const OfFacet &p, const NormalLaw &law);
+/// @param slip  at the nodes   @param traction, limit  Bernstein coefficients
+ContactIntegrals friction_integrals(int order, const OfFacet &slip, const OfFacet &traction, const OfFacet &limit);
 
 /// Penetrations of a facet of order 2 lowered in the middle so that they are nowhere positive where both ends are not.
 double lowered_middle(const OfFacet &v);

@@ -2,6 +2,7 @@
 #include "space_bound.hpp"
 
 #include "boundary.hpp"
+#include "constant_field.hpp"
 #include "descent.hpp"
 #include "galerkin.hpp"
 #include "ring_solves.hpp"
@@ -24,7 +25,7 @@ SpaceInput space_input(const analysis::Problem &problem, const analysis::Model &
   in.coords = d.mesh->coords;
   in.block = d.mesh->block;
   in.lame = fem::lame_table(d, model.materials);
-  for (int i = 0; i < 3; ++i) in.force[i] = model.body_force[i].constant;
+  for (int i = 0; i < 3; ++i) in.force[i] = value_everywhere(model.body_force[i]).value();
   in.facets = space_facets_of(d);
   in.cells = in.facets.nodes_of_cell;
   in.tables = facet_tables(d.mesh->element.order);
@@ -83,10 +84,14 @@ std::string not_covered_in_space(const analysis::Problem &problem, const analysi
   if (d.mesh->element.shape != mesh::Shape::simplex || d.mesh->element.order != 1)
     return "in space it covers tetrahedra of order 1, and the cells are " + d.mesh->element.name() +
            "; \"Mesh->Element\" = P1 is covered";
+  for (const auto &condition : model.dirichlet)
+    for (const auto &u : condition.displacement)
+      if (u && !value_everywhere(*u))
+        return "in space it covers prescribed displacements that are the same everywhere, and \"Dirichlet->" +
+               condition.name + "\" depends on the place";
   for (const auto &c : model.contact) {
-    const auto field = [&](const int p) { return c.*contact::law_parameters[p].field; };
-    if (!field(0).is_constant() || !field(1).is_zero() || !(field(2).is_constant() && std::isinf(field(2).constant)) ||
-        c.has_friction())
+    const auto number = [&](const int p) { return value_everywhere(c.*contact::law_parameters[p].field); };
+    if (!number(0) || number(1) != 0. || !number(2) || !std::isinf(*number(2)) || c.has_friction())
       return "in space it covers foundations that are rigid until they yield at one yield stress a side, without "
              "friction, and \"" +
              c.path + "\" is another";

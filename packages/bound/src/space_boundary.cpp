@@ -2,6 +2,7 @@
 #include "space_boundary.hpp"
 
 #include "boundary.hpp"
+#include "constant_field.hpp"
 #include "facet_polynomials.hpp"
 #include "rpc/core/evaluate.hpp"
 
@@ -193,7 +194,7 @@ SpaceContact space_side(const analysis::Problem &problem, const analysis::Model 
   const auto block = to_host(host.mesh.block);
   const auto lame = to_host(fem::lame_table(problem.discretization(), problem.model().materials));
   SpaceContact c;
-  c.limit = (options.*contact::law_parameters[0].field).constant;
+  c.limit = value_everywhere(options.*contact::law_parameters[0].field).value();
   c.facet = host.facets_of(host.mesh.side(options.side, options.path));
   const int first = points.first(k), last = points.first(k + 1);
   std::map<LO, int> point_at;

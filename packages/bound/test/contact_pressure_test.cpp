@@ -21,7 +21,6 @@ ContactFacets side(const int order, const int n, const double limit, const Press
 {
   ContactFacets c;
   c.order = order;
-  c.limit = limit;
   c.modulus = 1000;
   const int points = order * n + 1;
   c.force.assign(points, 0.);
@@ -32,6 +31,7 @@ ContactFacets side(const int order, const int n, const double limit, const Press
   for (int e = 0; e < n; ++e) {
     c.facet.push_back(e);
     c.length.push_back(1);
+    c.limit_of.push_back({limit, limit, limit});
     c.normal.push_back({0, -1});
     c.point.push_back(order == 1 ? std::array<int, 3>{e, e + 1, -1} : std::array<int, 3>{2 * e, 2 * e + 2, 2 * e + 1});
     const double weight[3] = {order == 1 ? 1. / 2 : 1. / 6, order == 1 ? 1. / 2 : 1. / 6, 4. / 6};
@@ -47,8 +47,8 @@ ContactFacets side(const int order, const int n, const double limit, const Press
 TEST(ContactIntegrals, AreThoseOfHandAlgebra)
 {
   // v = 2 x - 1, p = 1, xi = 3: xi v+ has 3/4, (xi - p) v+ + p v- has 2/4 + 1/4.
-  const ContactIntegrals linear = contact_integrals(1, {-1, 1, 0}, {1, 1, 0}, 3);
-  EXPECT_NEAR(linear.yielding, 0.75, 1e-14);
+  const ContactIntegrals linear = contact_integrals(1, {-1, 1, 0}, {1, 1, 0}, {{3, 3, 3}});
+  EXPECT_NEAR(linear.energy, 0.75, 1e-14);
   EXPECT_NEAR(linear.gap, 0.75, 1e-14);
   // v = 4 x (1 - x) - 3/4 is positive between 1/4 and 3/4, p = x (1 - x) has the Bernstein coefficients 0, 1/2, 0.
   // The integral of v+ is 1/12 and that of p v+ 19/960 ... by exact integration of polynomials.
@@ -61,13 +61,94 @@ TEST(ContactIntegrals, AreThoseOfHandAlgebra)
   const auto pv = [&](const double a, const double b) {
     return -0.75 * power(a, b, 1) + 4.75 * power(a, b, 2) - 8 * power(a, b, 3) + 4 * power(a, b, 4);
   };
-  const ContactIntegrals quadratic = contact_integrals(2, {-0.75, -0.75, 0.25}, {0, 0.5, 0}, 3);
-  EXPECT_NEAR(quadratic.yielding, 3 * v(0.25, 0.75), 1e-14);
+  const ContactIntegrals quadratic = contact_integrals(2, {-0.75, -0.75, 0.25}, {0, 0.5, 0}, {{3, 3, 3}});
+  EXPECT_NEAR(quadratic.energy, 3 * v(0.25, 0.75), 1e-14);
   EXPECT_NEAR(quadratic.gap, 3 * v(0.25, 0.75) - pv(0, 1), 1e-14);
   // Rigid: p v- alone.
-  const ContactIntegrals rigid = contact_integrals(2, {-1, -1, -1}, {2, 2, 2}, inf);
-  EXPECT_EQ(rigid.yielding, 0);
+  const ContactIntegrals rigid = contact_integrals(2, {-1, -1, -1}, {2, 2, 2}, {{inf, inf, inf}});
+  EXPECT_EQ(rigid.energy, 0);
   EXPECT_NEAR(rigid.gap, 2, 1e-14);
+}
+
+/// The midpoint rule with many points.
+template <class Function>
+double midpoints(const Function &f)
+{
+  constexpr int n = 200000;
+  double sum = 0;
+  for (int i = 0; i < n; ++i) sum += f((i + 0.5) / n) / n;
+  return sum;
+}
+
+TEST(ContactIntegrals, AreThoseOfTheLawWithSpringsAndHardening)
+{
+  // v from -0.3 to 0.9, p from 1 to 4, xi from 1.5 to 2.5, H = 4, c = 0.1: open, elastic and yielding, p below and above xi.
+  const double H = 4, c = 0.1;
+  const auto v = [](const double x) { return -0.3 + 1.2 * x; };
+  const auto p = [](const double x) { return 1 + 3 * x; };
+  const auto xi = [](const double x) { return 1.5 + x; };
+  const auto psi = [&](const double x) {
+    const double beyond = v(x) - c * xi(x);
+    if (v(x) < 0) return 0.;
+    return beyond < 0 ? v(x) * v(x) / (2 * c)
+                      : xi(x) * (v(x) - c * xi(x) / 2) + H * beyond * beyond / (2 * (1 + c * H));
+  };
+  const auto conjugate = [&](const double x) {
+    const double beyond = std::max(0., p(x) - xi(x));
+    return c * p(x) * p(x) / 2 + beyond * beyond / (2 * H);
+  };
+  const NormalLaw law{{1.5, 2.5, 0}, H, c};
+  const ContactIntegrals linear = contact_integrals(1, {-0.3, 0.9, 0}, {1, 4, 0}, law);
+  EXPECT_NEAR(linear.energy, midpoints(psi), 1e-9);
+  EXPECT_NEAR(linear.gap, midpoints([&](const double x) { return psi(x) + conjugate(x) - p(x) * v(x); }), 1e-9);
+  const NormalLaw quadratic_law{{1.5, 2, 2.5}, H, c};
+  const ContactIntegrals quadratic = contact_integrals(2, {-0.3, 0.9, 0.3}, {1, 2.5, 4}, quadratic_law);
+  EXPECT_NEAR(quadratic.energy, linear.energy, 1e-14);
+  EXPECT_NEAR(quadratic.gap, linear.gap, 1e-14);
+}
+
+TEST(FrictionIntegrals, AreThoseOfHandAlgebra)
+{
+  // e = 2 x - 1, q = 1, s = 2: s |e| has 1, q e has 0.
+  const ContactIntegrals sum = friction_integrals(1, {-1, 1, 0}, {1, 1, 0}, {2, 2, 0});
+  EXPECT_NEAR(sum.energy, 1, 1e-14);
+  EXPECT_NEAR(sum.gap, 1, 1e-14);
+  // q = s along the slip: nothing is left.
+  EXPECT_NEAR(friction_integrals(2, {0, 1, 0.5}, {2, 2, 2}, {2, 2, 2}).gap, 0, 1e-15);
+}
+
+TEST(FittedPressure, ExceedsTheYieldLimitWhereTheFoundationHardens)
+{
+  for (const int order : {1, 2}) {
+    ContactFacets c = side(order, 12, 5, [](const double) { return 7.; });
+    c.rise = 400;
+    const double depth = (7. - 5) / c.rise; // that the law has the pressure at
+    const auto p = fitted_pressure(c, std::vector<OfFacet>(12, OfFacet{depth, depth, depth}));
+    for (const OfFacet &facet : p)
+      for (int i = 0; i <= order; ++i) EXPECT_NEAR(facet[i], 7, 1e-6);
+  }
+}
+
+TEST(FittedFriction, KeepsToItsLimitsOnBothSides)
+{
+  for (const int order : {1, 2}) {
+    ContactFacets c = side(order, 12, 5, [](const double) { return 0.; });
+    c.friction.acts = true;
+    c.friction.free = c.free;
+    const double q[] = {3, -3};
+    for (int e = 0; e < 12; ++e) {
+      const double here = q[e < 6 ? 0 : 1];
+      c.friction.limit_of.push_back({2, 2, 2});
+      c.friction.traction.push_back({here, here, here});
+    }
+    c.friction.force.assign(c.force.size(), 0.);
+    for (std::size_t i = 0; i < c.force.size(); ++i) c.friction.force[i] = (c.place[i] < 6 ? 3. : -3.) / order;
+    const auto fitted = fitted_friction(c, std::vector<OfFacet>(12, OfFacet{}));
+    for (int e = 0; e < 12; ++e)
+      for (int i = 0; i <= order; ++i) EXPECT_LE(std::abs(fitted[e][i]), 2);
+    EXPECT_GT(fitted[1][0], 1.5);
+    EXPECT_LT(fitted[10][0], -1.5);
+  }
 }
 
 TEST(FittedPressure, IsTheOneThatTheForcesComeFromWhereThatIsAPolynomial)

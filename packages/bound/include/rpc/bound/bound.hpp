@@ -12,6 +12,8 @@ namespace rpc::bound
 /// Bounds of the energy of the exact solution and of the error of a discrete one, without a constant that would have to be estimated.
 ///                                                                                                  doc/theory.md, section 13
 struct EnergyBound {
+  /// What J counts: with friction its work s |e| too, and for Coulomb's law with the limits s of this solution.            (13.12)
+  enum class Of { energy, energy_and_friction, energy_and_fixed_friction } of = Of::energy;
   double lower = 0, upper = 0; ///< of J(u) [J], in 2D per m
   double energy_norm = 0;      ///< |u - u_h| is not larger [J^(1/2)], in 2D per m
   double moved = 0;            ///< |u^ - u_h|, by how much u_h was moved out of the foundation [J^(1/2)]
@@ -22,6 +24,9 @@ struct EnergyBound {
   double seconds = 0;          ///< of all
   std::string missing;         ///< why there is no bound; empty if there is one
 };
+
+/// How results name what J counts.
+const char *name_of(EnergyBound::Of of);
 
 /// Whether the bound is known for a task; needs no mesh.
 /// @throws rpc::Error (bad_input) naming what is covered, if not
