@@ -267,6 +267,15 @@ void print_bound(std::ostream &out, const Scene &scene, const Solution &s)
                      ? number_text("%.1e", b.energy_norm / std::sqrt(s.energy_norm_squared)) + " of the energy norm"
                      : number_text("%.1e", b.energy_norm) + " in the energy norm")
           : "nothing: " + b.missing);
+  const std::string of_force = scene.model.units.of(unit::force, s.discretization.per_length());
+  for (std::size_t k = 0; k < b.contact_force.size(); ++k) {
+    const bound::ForceBound &force = b.contact_force[k];
+    const std::string side = "\"" + scene.model.contact[k].name_in_results() + "\" along its normal";
+    print_text(out, "guaranteed force",
+               force.missing.empty() ? "that of " + side + " is in [" + number_text("%.6g", force.lower) + ", " +
+                                           number_text("%.6g", force.upper) + "] " + of_force
+                                     : "unknown of " + side + ": " + force.missing);
+  }
 }
 
 /// Where error bars come from, or how to have them.

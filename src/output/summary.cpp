@@ -116,6 +116,14 @@ nlohmann::ordered_json bound_json(const bound::EnergyBound &b)
   json["energy_J"] = known ? nlohmann::ordered_json({b.lower, b.upper}) : nlohmann::ordered_json();
   json["energy_norm"] = known ? nlohmann::ordered_json(b.energy_norm) : nlohmann::ordered_json();
   json["reason"] = b.missing;
+  json["contact_force"] = nlohmann::ordered_json::array();
+  json["contact_force_reasons"] = nlohmann::ordered_json::array();
+  for (const bound::ForceBound &force : b.contact_force) {
+    const bool has_bound = force.missing.empty();
+    json["contact_force"].push_back(has_bound ? nlohmann::ordered_json({force.lower, force.upper})
+                                              : nlohmann::ordered_json());
+    json["contact_force_reasons"].push_back(force.missing);
+  }
   json["moved_by"] = b.moved;
   json["by_step"] = b.steps;
   json["imbalance"] = b.imbalance;

@@ -4,6 +4,8 @@
 #include "run_scene.hpp"
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
 
 // Guaranteed bounds of energy and error, doc/theory.md, section 13. The table of the beam comes from independent code; its energies from
@@ -84,6 +86,79 @@ TEST(ErrorBound, OfEachMeshThatIsAdapted)
   }
 }
 
+TEST(ErrorBound, IsWhatAdaptedMeshesStopByAndFollow)
+{
+  const double target = 0.05;
+  const Solution s =
+      beam("P1", 4, "16", {"Adapt->Target Relative Error=" + std::to_string(target), "Adapt->Meshes=nested"});
+  ASSERT_TRUE(s.adaptation);
+  EXPECT_TRUE(s.adaptation->reached);
+  const auto &cycles = s.adaptation->cycles;
+  const auto relative = [](const auto &cycle) {
+    return cycle.bound->energy_norm / std::sqrt(cycle.energy_norm_squared);
+  };
+  ASSERT_GT(cycles.size(), 1u);
+  for (std::size_t k = 0; k + 1 < cycles.size(); ++k) EXPECT_GT(relative(cycles[k]), target);
+  EXPECT_LE(relative(cycles.back()), target);
+  EXPECT_LT(cycles.back().dofs, 6000); // the estimator, which is smaller, needs 2818 for an estimate of as much
+  double sum = 0;
+  const auto parts = to_host(s.bound->squared);
+  for (std::size_t c = 0; c < parts.extent(0); ++c) sum += parts(c);
+  EXPECT_EQ(static_cast<LO>(parts.extent(0)), s.discretization.mesh->num_owned_cells);
+  EXPECT_NEAR(sum, s.bound->energy_norm * s.bound->energy_norm, 1e-10 * sum);
+}
+
+TEST(ErrorBound, HoldsTheContactForce)
+{
+  // The reference: cells of P2 a quarter as long.
+  const std::string deck = std::string(RPC_TEST_DECKS) + "/heavy_block.xml";
+  for (const std::vector<std::string> &law : std::vector<std::vector<std::string>>{
+           {"Contact->Gap=0.0005*x"},
+           {"Contact->Gap=0.0005*x", "Contact->Stiffness=3e3", "Contact->Hardening=0"},
+           {"Contact->Gap=0.0005*x", "Contact->Friction Bound=0.5"}}) {
+    SCOPED_TRACE(law.back());
+    auto of_fine = law;
+    of_fine.push_back("Mesh->Cells={32, 24}");
+    const Solution fine = bounded(deck, of_fine);
+    const double force = fine.contact.total.force[1];
+    ASSERT_GT(force, 0);
+    for (const std::string element : {"P1", "P2", "Q1", "Q2"}) {
+      SCOPED_TRACE(element);
+      auto of_coarse = law;
+      of_coarse.insert(of_coarse.end(), {"Mesh->Element=" + element, "Mesh->Cells={8, 6}"});
+      const Solution s = bounded(deck, of_coarse);
+      ASSERT_EQ(s.bound->contact_force.size(), 1u);
+      const bound::ForceBound &interval = s.bound->contact_force[0];
+      EXPECT_EQ(interval.missing, "");
+      EXPECT_LT(interval.lower, force);
+      EXPECT_GT(interval.upper, force);
+      EXPECT_GT(interval.upper, fine.bound->contact_force[0].lower);
+      EXPECT_LT(interval.lower, fine.bound->contact_force[0].upper);
+      EXPECT_LT(interval.upper - interval.lower, (element[1] == '1' ? 0.8 : 0.35) * force);
+    }
+    EXPECT_LT(fine.bound->contact_force[0].upper - fine.bound->contact_force[0].lower, 0.1 * force);
+  }
+}
+
+TEST(ErrorBound, OfTheContactForceIsItselfWhereTheElementsHaveTheSolution)
+{
+  for (const std::string element : {"P1", "Q2"}) {
+    SCOPED_TRACE(element);
+    const Solution s = bounded(std::string(RPC_TEST_DECKS) + "/even_block.xml", {"Mesh->Element=" + element});
+    const double force = s.contact.total.force[1];
+    ASSERT_EQ(s.bound->contact_force.size(), 1u);
+    EXPECT_NEAR(s.bound->contact_force[0].lower, force, 1e-5 * force);
+    EXPECT_NEAR(s.bound->contact_force[0].upper, force, 1e-5 * force);
+  }
+}
+
+TEST(ErrorBound, OfTheContactForceHasAReasonWhereThereIsNone)
+{
+  const Solution s = beam("P1", 4, "inf");
+  ASSERT_EQ(s.bound->contact_force.size(), 1u);
+  EXPECT_NE(s.bound->contact_force[0].missing.find("no yield stress limits"), std::string::npos);
+}
+
 TEST(ErrorBound, IsZeroWhereTheElementsHaveTheSolution)
 {
   // A block under an even pressure of 3 Pa that slides at its sides: constant stresses, in contact or yielding.
@@ -160,6 +235,13 @@ TEST(ErrorBound, IsRefusedWithWhatIsCovered)
             "\"Mesh->Element\" = P2, or \"Adapt->Meshes\" = nested");
   refused("beam.xml", {small, "Contact->Yield Stress=t*x", "Steps->Times={1}"}, "Yield Stress");
   refused("block.xml", {"Contact->Yield Stress=16"}, "in space");
+  if (!mesh::has_gmsh()) return;
+  const std::filesystem::path quadrilaterals = std::filesystem::temp_directory_path() / "rpc_error_bound_quads.geo";
+  std::filesystem::copy_file(std::string(RPC_TEST_DECKS) + "/transfinite.geo", quadrilaterals,
+                             std::filesystem::copy_options::overwrite_existing);
+  std::ofstream(quadrilaterals, std::ios::app) << "Recombine Surface {1};\n";
+  refused("../test/verification/decks/transfinite.xml",
+          {"Mesh->File=" + quadrilaterals.string(), "Adapt->Target Relative Error=0.1"}, "Recombine");
 }
 
 } // namespace

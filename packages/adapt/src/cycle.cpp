@@ -261,9 +261,19 @@ ObservedErrors observed_errors(std::vector<Cycle> cycles, const CoarserHistory &
   return errors;
 }
 
+double relative_bound(const bound::EnergyBound &bound, const double energy_norm_squared)
+{
+  return bound.energy_norm == 0 ? 0 : bound.energy_norm / std::sqrt(energy_norm_squared);
+}
+
 std::size_t best_of(const std::vector<Cycle> &cycles)
 {
-  const auto less = [](const Cycle &a, const Cycle &b) { return a.estimate < b.estimate; };
+  const auto error = [](const Cycle &c) {
+    if (!c.bound) return c.estimate;
+    return c.bound->missing.empty() ? relative_bound(*c.bound, c.energy_norm_squared)
+                                    : std::numeric_limits<double>::infinity();
+  };
+  const auto less = [&](const Cycle &a, const Cycle &b) { return error(a) < error(b); };
   return std::min_element(cycles.begin(), cycles.end(), less) - cycles.begin();
 }
 

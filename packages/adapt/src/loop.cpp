@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "earlier_steps.hpp"
+#include "guide.hpp"
 #include "next_mesh.hpp"
 #include "rpc/adapt/solve.hpp"
 #include "rpc/bound/rules.hpp"
@@ -48,6 +49,7 @@ Solution with_estimate(const Task &task, const Listener &listener, const Run &ru
   if (guaranteed)
     all.step.start = [&](const analysis::Problem &problem, const analysis::Step &step) {
       bound::require_covered(problem, step);
+      require_coverable_meshes(task, problem.discretization().mesh->element);
       if (listener.step.start) listener.step.start(problem, step);
     };
   all.solved = [&](const analysis::Problem &problem, analysis::Solution &found) {
@@ -161,8 +163,9 @@ std::optional<analysis::MadeMesh> next_mesh(MeshPlanner &planner, const Solution
 {
   const RCP<const Comm> comm = s.discretization.mesh->owned_nodes->getComm();
   forecast.told_before = forecast.misses_contact ? 0 : forecast.last_dofs;
-  forecast.misses_contact = s.estimate->misses_contact();
-  auto options = planner.next(s.discretization, *s.estimate, estimated_energy(s), forecast, reason);
+  const ErrorEstimate estimate = guide(s);
+  forecast.misses_contact = estimate.misses_contact();
+  auto options = planner.next(s.discretization, estimate, s.energy_norm_squared + estimate.unseen(), forecast, reason);
   if (options) {
     forecast.seconds = seconds_for(forecast, per_dof);
     if (listener.forecast) listener.forecast(forecast);
@@ -172,7 +175,7 @@ std::optional<analysis::MadeMesh> next_mesh(MeshPlanner &planner, const Solution
       analysis::MadeMesh made = analysis::made_mesh(*options, comm);
       if (planner.fits(*made.mesh)) return made;
       seconds.mesh += made.seconds;
-      options = planner.smaller(s.discretization, *s.estimate, *made.mesh, reason);
+      options = planner.smaller(s.discretization, estimate, *made.mesh, reason);
     }
   } catch (const Error &failure) { // on all ranks
     reason = why_ended(failure, *comm);
@@ -223,7 +226,7 @@ Solution solve_adaptively(const Task &task, const Solution *const earlier, const
       break;
     }
     if (listener.estimate) listener.estimate(*last);
-    adaptation.reached = cycles.back().estimate <= task.adapt.target;
+    adaptation.reached = relative_error(task, *last) <= task.adapt.target;
     if (only_rounding(*last)) adaptation.reason = nothing_strained(*last, task.model.units);
     if (adaptation.reached) break;
     if (last->estimate->total() <= last->estimate->rounding) {

@@ -3,9 +3,11 @@
 
 #include "boundary.hpp"
 #include "constant_field.hpp"
+#include "contact_force.hpp"
 #include "contact_terms.hpp"
 #include "descent.hpp"
 #include "galerkin.hpp"
+#include "local_terms.hpp"
 #include "rpc/core/timed.hpp"
 #include "space_bound.hpp"
 #include "star_solves.hpp"
@@ -64,6 +66,31 @@ PointTractions tractions_of(const contact::ContactResult &contact)
   for (std::size_t i = 0; i < along.extent(0); ++i)
     for (int d = 0; d < 2; ++d) on_host.along(i, d) = along(i, d);
   return on_host;
+}
+
+/// a(u, w), by norms of sums of alike size.
+double energy_product(const fem::Discretization &d, const fem::Materials &materials, const Vector &u, const Vector &w)
+{
+  const auto squared = [&](const Vector &x) { return fem::internal_work(d, materials, x).energy_norm_squared; };
+  const double of_u = squared(u), of_w = squared(w);
+  if (of_u == 0 || of_w == 0) return 0;
+  const double scale = std::sqrt(of_u / of_w);
+  Vector sum(u, Teuchos::Copy), difference(u, Teuchos::Copy);
+  sum.update(scale, w, 1);
+  difference.update(-scale, w, 1);
+  return (squared(sum) - squared(difference)) / (4 * scale);
+}
+
+/// What contact misses in each owned cell of contact facets.
+std::vector<std::pair<LO, double>> gaps_of_cells(const CellInput &in, const LO num_owned,
+                                                 const std::vector<ContactFacets> &sides, const ContactTerms &contact)
+{
+  const auto cell = to_host(in.facets.cell);
+  std::vector<std::pair<LO, double>> gaps;
+  for (std::size_t k = 0; k < sides.size(); ++k)
+    for (std::size_t f = 0; f < sides[k].facet.size(); ++f)
+      if (cell(sides[k].facet[f], 0) < num_owned) gaps.push_back({cell(sides[k].facet[f], 0), contact.gap_of[k][f]});
+  return gaps;
 }
 
 } // namespace
@@ -162,6 +189,7 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   const StressDifference left = stress_difference(in, t, *u, of_cell);
   bound.imbalance = left.force > 0 ? left.imbalance / left.force : 0;
   double energy = left.energy;
+  const double stress_norm = std::sqrt(2 * energy) + lift;
   for (int step = steps; step >= 0; --step) {
     const double norm = std::sqrt(2 * energy) + lift;
     bound.steps.insert(bound.steps.begin(), norm * norm / 2 + contact.gap);
@@ -170,8 +198,28 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   const double best = bound.steps.back();
   bound.lower = bound.upper - best;
   bound.energy_norm = std::sqrt(2 * best) + bound.moved;
-  if (!(bound.imbalance <= 1e-8))
+  bound.squared = local_terms(
+      d.mesh->comm(), of_cell, left.energy > 0 ? stress_norm * stress_norm / (2 * left.energy) : 0,
+      gaps_of_cells(in, d.mesh->num_owned_cells, boundary.sides, contact), bound.energy_norm * bound.energy_norm);
+  if (!(bound.imbalance <= 1e-8)) {
     bound.missing = "cells are out of balance by " + shown(bound.imbalance) + " of their forces";
+    return bound;
+  }
+  const double rho = std::sqrt(stress_norm * stress_norm / 4 + contact.gap); // (13.13)
+  for (std::size_t k = 0; k < boundary.sides.size(); ++k) {
+    const UnitPress press = unit_press(problem, s.step.time, boundary.sides, static_cast<int>(k), options);
+    ForceBound force;
+    force.missing = press.missing;
+    if (press.missing.empty()) {
+      const double of_loads = work_of(d, known_moments(in, boundary.tractions), in, *press.w),
+                   of_all = work_of(d, known_moments(in, all), in, *press.w);
+      const double middle = of_loads - (of_all + energy_product(d, model.materials, *u, *press.w)) / 2;
+      const double room = rho * std::sqrt(fem::internal_work(d, model.materials, *press.w).energy_norm_squared);
+      force.lower = std::max(0., middle - room + press.low);
+      force.upper = std::min(largest_force(boundary.sides[k]), middle + room + press.high);
+    }
+    bound.contact_force.push_back(force);
+  }
   return bound;
 }
 

@@ -309,6 +309,8 @@ ContactFacets contact_side(const analysis::Problem &problem, const analysis::Mod
     const std::array<double, 2> e = host.edge(f);
     if (c.length.empty()) along = {e[0] / host.length_of(f), e[1] / host.length_of(f)};
     c.length.push_back(host.length_of(f));
+    c.ends.push_back({Point{host.coords(at[0], 0), host.coords(at[0], 1), 0},
+                      Point{host.coords(at[1], 0), host.coords(at[1], 1), 0}});
     RPC_REQUIRE(std::abs(e[0] * along[1] - e[1] * along[0]) <= 1e-10 * c.length.back(),
                 not_covered(options, "it has a bend, or is curved"));
     std::array<int, 3> of_facet{-1, -1, -1};

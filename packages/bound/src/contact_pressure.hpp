@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rpc/core/kokkos.hpp"
+#include "rpc/core/point.hpp"
 
 #include <array>
 #include <vector>
@@ -34,6 +35,7 @@ struct ContactFacets {
   std::vector<LO> facet;                     ///< numbers of the facets
   std::vector<double> length;                ///< (facets) [m]
   std::vector<std::array<double, 2>> normal; ///< (facets) of the contact law
+  std::vector<std::array<Point, 2>> ends;    ///< (facets) where they begin and end [m]
   std::vector<OfFacet> dent;                 ///< (facets) w of earlier steps at the nodes [m]
   std::vector<std::array<int, 3>>
       point;                 ///< (facets) contact points at both ends and in the middle, numbered from 0; the last -1

@@ -5,6 +5,7 @@
 #include "constant_field.hpp"
 #include "descent.hpp"
 #include "galerkin.hpp"
+#include "local_terms.hpp"
 #include "ring_solves.hpp"
 #include "space_boundary.hpp"
 
@@ -124,6 +125,8 @@ EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::Ste
   bound.moved = std::sqrt(std::max(0., fem::internal_work(d, model.materials, way).energy_norm_squared));
 
   double yielding = 0, gap = 0;
+  std::vector<std::pair<LO, double>> gaps;
+  const auto cell = to_host(in.facets.cell);
   for (std::size_t k = 0; k < boundary.sides.size(); ++k) {
     const SpaceContact &c = boundary.sides[k];
     pressure.push_back(fitted_pressure(c, depth[k]));
@@ -134,6 +137,7 @@ EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::Ste
       const TriangleIntegrals of_facet = contact_integrals(v, pressure[k][e], c.limit);
       yielding += c.area[e] * of_facet.yielding;
       gap += c.area[e] * of_facet.gap;
+      gaps.push_back({cell(c.facet[e], 0), c.area[e] * of_facet.gap});
     }
   }
   const double strain = fem::internal_work(d, model.materials, *u).energy_norm_squared;
@@ -163,6 +167,7 @@ EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::Ste
   const StressDifference left = stress_difference(in, forms, t, *u, of_cell);
   bound.imbalance = left.force > 0 ? left.imbalance / left.force : 0;
   double energy = left.energy;
+  const double stress_norm = std::sqrt(2 * energy) + lift;
   for (int step = steps; step >= 0; --step) {
     const double norm = std::sqrt(2 * energy) + lift;
     bound.steps.insert(bound.steps.begin(), norm * norm / 2 + gap);
@@ -171,6 +176,10 @@ EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::Ste
   const double best = bound.steps.back();
   bound.lower = bound.upper - best;
   bound.energy_norm = std::sqrt(2 * best) + bound.moved;
+  bound.squared =
+      local_terms(d.mesh->comm(), of_cell, left.energy > 0 ? stress_norm * stress_norm / (2 * left.energy) : 0, gaps,
+                  bound.energy_norm * bound.energy_norm);
+  bound.contact_force.assign(boundary.sides.size(), {0, 0, "forces of bodies in space have no bound"});
   if (!(bound.imbalance <= 1e-8))
     bound.missing = "cells are out of balance by " + shown(bound.imbalance) + " of their forces";
   return bound;

@@ -107,7 +107,10 @@ struct EarlierSteps {
 ObservedErrors observed_errors(std::vector<Cycle> cycles, const CoarserHistory &coarser, const EarlierSteps &earlier,
                                const FixedByLoad &fixed = {}, double tolerance = 0);
 
-/// The mesh with the least estimate; with the target met that is the last one.
+/// Of an error in the energy norm, over that of the solution.
+double relative_bound(const bound::EnergyBound &bound, double energy_norm_squared);
+
+/// The mesh with the least error, by its guaranteed bound where it has one, else by its estimate; with the target met that is the last one.
 std::size_t best_of(const std::vector<Cycle> &cycles);
 
 /// What became of "Adapt".

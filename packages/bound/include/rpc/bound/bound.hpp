@@ -9,6 +9,12 @@
 namespace rpc::bound
 {
 
+/// Bounds of the force of a contact side along its normal, the integral of its pressure [N], in 2D per m.             (13.15)
+struct ForceBound {
+  double lower = 0, upper = 0;
+  std::string missing; ///< why there is none; empty if there is one
+};
+
 /// Bounds of the energy of the exact solution and of the error of a discrete one, without a constant that would have to be estimated.
 ///                                                                                                  doc/theory.md, section 13
 struct EnergyBound {
@@ -18,11 +24,13 @@ struct EnergyBound {
   double energy_norm = 0;      ///< |u - u_h| is not larger [J^(1/2)], in 2D per m
   double moved = 0;            ///< |u^ - u_h|, by how much u_h was moved out of the foundation [J^(1/2)]
   std::vector<double> steps;   ///< J(u^) - D(sigma) after 0, 1, ... steps of conjugate gradients on tractions [J]
-  double imbalance = 0;        ///< largest force that is out of balance on a cell, over the largest on a side of one
-  int linear_iterations = 0;   ///< of the elastic solve
-  double solve_seconds = 0;    ///< that it took, with what it sets up
-  double seconds = 0;          ///< of all
-  std::string missing;         ///< why there is no bound; empty if there is one
+  std::vector<ForceBound> contact_force; ///< by contact side
+  DeviceView<double *> squared;          ///< (owned cells) the parts of energy_norm^2 [J], in 2D per m
+  double imbalance = 0;      ///< largest force that is out of balance on a cell, over the largest on a side of one
+  int linear_iterations = 0; ///< of the elastic solve
+  double solve_seconds = 0;  ///< that it took, with what it sets up
+  double seconds = 0;        ///< of all
+  std::string missing;       ///< why there is no bound; empty if there is one
 };
 
 /// How results name what J counts.
