@@ -324,7 +324,6 @@ class Told(ConsoleTestCase):
         self.assertEqual(results["energy_J"]["reason"], "there is no solution")
         self.assertNotIn("nan", self.stdout)
 
-    @unittest.skipIf(RANKS > 1, "guaranteed bounds go with one rank")
     def test_a_guaranteed_interval_of_J_is_its_bar(self):
         for more in ([], ["--set=Mesh->Element=P2", "--set=Adapt->Target Relative Error=0.05"]):
             results = self.run_deck(SMALL, "--set=Adapt->Error Bound=guaranteed", *more)

@@ -8,6 +8,7 @@
 #include "descent.hpp"
 #include "galerkin.hpp"
 #include "local_terms.hpp"
+#include "rpc/core/parallel.hpp"
 #include "rpc/core/timed.hpp"
 #include "space_bound.hpp"
 #include "star_solves.hpp"
@@ -23,7 +24,7 @@ namespace
 
 constexpr const char *covered =
     "\"Adapt->Error Bound\" = guaranteed covers plane strain and plane stress of straight triangles or parallelograms, "
-    "and tetrahedra of order 1, on one rank, on foundations whose law is the same all along a side";
+    "and on one rank tetrahedra of order 1, on foundations whose law is the same all along a side";
 
 void require_of_deck(const bool condition, const std::string &what)
 {
@@ -51,6 +52,7 @@ CellInput cell_input(const analysis::Problem &problem, const analysis::Model &mo
   in.block = d.mesh->block;
   in.lame = fem::lame_table(d, model.materials);
   for (int i = 0; i < 2; ++i) in.force[i] = value_everywhere(model.body_force[i]).value();
+  in.num_owned_cells = d.mesh->num_owned_cells;
   in.facets = facets_of(d);
   in.reference = reference_stress(d.mesh->element);
   return in;
@@ -68,6 +70,21 @@ PointTractions tractions_of(const contact::ContactResult &contact)
   return on_host;
 }
 
+/// The inner product, each facet counted by one rank.
+double product_over_ranks(const CellInput &in, const Comm &comm, const Tractions &x, const Tractions &y)
+{
+  const int per_facet = 2 * (in.reference.degree + 1);
+  const auto counts = in.facets.counts;
+  double sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::bound::product_over_ranks", device_range(in.facets.size()),
+      KOKKOS_LAMBDA(const LO f, double &part) {
+        for (int q = 0; q < per_facet && counts(f); ++q) part += x(f * per_facet + q) * y(f * per_facet + q);
+      },
+      sum);
+  return sum_all(comm, sum);
+}
+
 /// a(u, w), by norms of sums of alike size.
 double energy_product(const fem::Discretization &d, const fem::Materials &materials, const Vector &u, const Vector &w)
 {
@@ -82,14 +99,15 @@ double energy_product(const fem::Discretization &d, const fem::Materials &materi
 }
 
 /// What contact misses in each owned cell of contact facets.
-std::vector<std::pair<LO, double>> gaps_of_cells(const CellInput &in, const LO num_owned,
-                                                 const std::vector<ContactFacets> &sides, const ContactTerms &contact)
+std::vector<std::pair<LO, double>> gaps_of_cells(const CellInput &in, const std::vector<ContactFacets> &sides,
+                                                 const ContactTerms &contact)
 {
   const auto cell = to_host(in.facets.cell);
   std::vector<std::pair<LO, double>> gaps;
   for (std::size_t k = 0; k < sides.size(); ++k)
     for (std::size_t f = 0; f < sides[k].facet.size(); ++f)
-      if (cell(sides[k].facet[f], 0) < num_owned) gaps.push_back({cell(sides[k].facet[f], 0), contact.gap_of[k][f]});
+      if (sides[k].facet[f] >= 0 && cell(sides[k].facet[f], 0) < in.num_owned_cells)
+        gaps.push_back({cell(sides[k].facet[f], 0), contact.gap_of[k][f]});
   return gaps;
 }
 
@@ -111,8 +129,9 @@ void require_covered(const analysis::Problem &problem, const analysis::Step &ste
 {
   const fem::Discretization &d = problem.discretization();
   const analysis::Model model = problem.model().seen_at(step.time);
-  require_of_deck(d.mesh->comm().getSize() == 1, "there are " + std::to_string(d.mesh->comm().getSize()) +
-                                                     " ranks, and stars at their borders would need cells of both");
+  require_of_deck(d.dim() == 2 || d.mesh->comm().getSize() == 1,
+                  "there are " + std::to_string(d.mesh->comm().getSize()) +
+                      " ranks, and in space rings at their borders would need cells of both");
   require_same_everywhere(model);
   require_of_deck(!step.support.by_contact_only, "contact alone holds the body");
   const auto projected = to_host(fem::projected_dilatation_table(d, model.materials));
@@ -126,7 +145,7 @@ void require_covered(const analysis::Problem &problem, const analysis::Step &ste
     return;
   }
   const CellInput in = cell_input(problem, model);
-  const double distortion = largest_distortion(in, d.mesh->element);
+  const double distortion = max_all(d.mesh->comm(), largest_distortion(in, d.mesh->element));
   require_of_deck(distortion <= 1e-9, "cells of " + d.mesh->element.name() +
                                           " are curved, or quadrilaterals whose opposite sides are not parallel (by " +
                                           shown(distortion) + " of a cell)");
@@ -154,14 +173,13 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   for (std::size_t k = 0; k < boundary.sides.size(); ++k)
     if (boundary.sides[k].friction.acts) bound.of = std::max(bound.of, kind_of_friction(model.contact[k]));
   const HostView<double *> moved = host_copy(*s.u);
-  for (std::size_t k = 0; k < boundary.sides.size(); ++k)
-    move_out(boundary.sides[k], s.step.contact.first(k), s.step.contact, moved);
+  for (std::size_t k = 0; k < boundary.sides.size(); ++k) move_out(boundary.sides[k], *d.mesh, moved);
   const RCP<const Vector> u = vector_of(moved, d.owned_dofs);
   Vector way(*u, Teuchos::Copy);
   way.update(-1, *s.u, 1);
   bound.moved = std::sqrt(std::max(0., fem::internal_work(d, model.materials, way).energy_norm_squared));
 
-  const ContactTerms contact = contact_terms(boundary.sides, s.step.contact, moved);
+  const ContactTerms contact = contact_terms(boundary.sides, *d.mesh, moved);
   bound.missing = contact.missing;
   const double strain = fem::internal_work(d, model.materials, *u).energy_norm_squared;
   const double work = work_of(d, known_moments(in, boundary.tractions), in, *u);
@@ -175,18 +193,22 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   if (!galerkin.failure.empty()) bound.missing = galerkin.failure;
   if (!bound.missing.empty()) return bound;
 
-  const Tractions t = equilibrated(in, all, galerkin.Q, mean_moments(in, *galerkin.u));
-  const double lift = norm_of_lifted_loads(in, lifted_loads(d.mesh->element), boundary.tractions.load);
-  const DeviceView<double *> of_cell("rpc::bound::of_cell", in.num_cells());
-  const CellForms forms = cell_forms(in, *u);
-  const StarSolves stars(in, all, forms);
+  const FacetExchange exchange(d, in.facets);
+  const Comm &comm = d.mesh->comm();
+  const Tractions t = equilibrated(in, all, galerkin.Q, mean_moments(in, *fem::on_overlap(d, *galerkin.u)), exchange);
+  const double lift = norm_of_lifted_loads(in, comm, lifted_loads(d.mesh->element), boundary.tractions.load);
+  const DeviceView<double *> of_cell("rpc::bound::of_cell", in.num_owned_cells);
+  const RCP<const Vector> on_overlap = fem::on_overlap(d, *u);
+  const CellForms forms = cell_forms(in, *on_overlap);
+  const StarSolves stars(in, all, forms, exchange);
   const DeviceView<double **> scratch("rpc::bound::scratch", in.num_cells(), in.reference.tractions);
   Descent descent(
       [&](const Tractions &x, const bool linear, const Tractions &y) { add_up(in, forms, x, linear, scratch, y); },
-      [&](const Tractions &g, const Tractions &z) { stars.apply(g, z); }, t);
+      [&](const Tractions &g, const Tractions &z) { stars.apply(g, z); },
+      [&](const Tractions &x, const Tractions &y) { return product_over_ranks(in, comm, x, y); }, t);
   std::vector<double> falls;
   for (int step = 0; step < steps; ++step) falls.push_back(descent.step());
-  const StressDifference left = stress_difference(in, t, *u, of_cell);
+  const StressDifference left = stress_difference(in, comm, t, *on_overlap, of_cell);
   bound.imbalance = left.force > 0 ? left.imbalance / left.force : 0;
   double energy = left.energy;
   const double stress_norm = std::sqrt(2 * energy) + lift;
@@ -198,9 +220,8 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   const double best = bound.steps.back();
   bound.lower = bound.upper - best;
   bound.energy_norm = std::sqrt(2 * best) + bound.moved;
-  bound.squared = local_terms(
-      d.mesh->comm(), of_cell, left.energy > 0 ? stress_norm * stress_norm / (2 * left.energy) : 0,
-      gaps_of_cells(in, d.mesh->num_owned_cells, boundary.sides, contact), bound.energy_norm * bound.energy_norm);
+  bound.squared = local_terms(comm, of_cell, left.energy > 0 ? stress_norm * stress_norm / (2 * left.energy) : 0,
+                              gaps_of_cells(in, boundary.sides, contact), bound.energy_norm * bound.energy_norm);
   if (!(bound.imbalance <= 1e-8)) {
     bound.missing = "cells are out of balance by " + shown(bound.imbalance) + " of their forces";
     return bound;

@@ -5,9 +5,11 @@
 #include "gauss.hpp"
 #include "rpc/contact/law/friction.hpp"
 #include "rpc/core/evaluate.hpp"
+#include "rpc/core/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <set>
@@ -47,18 +49,20 @@ struct OnHost {
     for (std::size_t i = 0; i < x.extent(0); ++i)
       for (int d = 0; d < 2; ++d) coords(i, d) = x(i, d);
   }
-  /// Numbers of the facets of a side.
+  /// Numbers of the facets of a side. Collective.
   std::vector<LO> facets_of(const mesh::Side &side) const
   {
     const auto cells = to_host(side.cell);
     const auto ordinals = to_host(side.ordinal);
     std::vector<LO> all;
+    int inside = 0;
     for (std::size_t k = 0; k < cells.extent(0); ++k) {
       all.push_back(of_cell(cells(k), ordinals(k)));
-      RPC_REQUIRE(cell(all.back(), 1) < 0,
-                  "deck: \"Adapt->Error Bound\" = guaranteed covers sides on the boundary of the body; side \""
-                      << side.name << "\" lies within it. Write \"estimated\"");
+      if (cell(all.back(), 1) >= 0) inside = 1;
     }
+    RPC_REQUIRE(max_all(mesh.comm(), inside) == 0,
+                "deck: \"Adapt->Error Bound\" = guaranteed covers sides on the boundary of the body; side \""
+                    << side.name << "\" lies within it. Write \"estimated\"");
     return all;
   }
   std::array<double, 2> edge(const LO f) const
@@ -78,6 +82,19 @@ struct OnHost {
     return x;
   }
 };
+
+/// Where something is off most, on all ranks.
+struct Place {
+  double off, x, y;
+};
+Place place_of_worst(const Comm &comm, const double off, const double x, const double y)
+{
+  const std::vector<double> all = gathered_by_all(comm, std::vector<double>{off, x, y});
+  Place worst{all[0], all[1], all[2]};
+  for (std::size_t k = 3; k + 2 < all.size(); k += 3)
+    if (all[k] > worst.off) worst = {all[k], all[k + 1], all[k + 2]};
+  return worst;
+}
 
 /// What the elements make of values at the ends and in the middle of a facet, at a point of it.
 double at_point(const int order, const OfFacet &g, const double s)
@@ -117,7 +134,8 @@ void require_represented_load(const OnHost &host, const fem::VectorField &tracti
         }
       }
   }
-  RPC_REQUIRE(worst <= allowed * largest,
+  const Place place = place_of_worst(host.mesh.comm(), worst, worst > 0 ? x(at, 0) : 0, worst > 0 ? x(at, 1) : 0);
+  RPC_REQUIRE(place.off <= allowed * max_all(host.mesh.comm(), largest),
               "deck: \"Adapt->Error Bound\" = guaranteed covers loads that are smooth within each cell; \"Traction->"
                   << name << "\" is not, at (" << x(at, 0) << ", " << x(at, 1)
                   << "). Let cells end where it jumps or bends, take smaller ones, or write \"estimated\"");
@@ -133,17 +151,23 @@ void require_represented_displacement(const ScalarField &field, const OnHost &ho
   const std::size_t n = rule.point.size();
   const HostPoints x = host.points(facets, rule);
   const auto u = evaluate(field, x, "Dirichlet->" + name, host.mesh.comm());
-  double largest = 0;
-  for (std::size_t q = 0; q < u.extent(0); ++q) largest = std::max(largest, std::abs(u(q)));
+  double largest = 0, worst = 0;
+  std::size_t at = 0;
   for (std::size_t e = 0; e < facets.size(); ++e)
     for (std::size_t q = 0; q < n; ++q) {
       const double here = at_point(host.mesh.element.order, {u(e * n), u(e * n + 1), u(e * n + 2)}, rule.point[q]);
-      RPC_REQUIRE(std::abs(u(e * n + q) - here) <= 1e-10 * largest,
-                  "deck: \"Adapt->Error Bound\" = guaranteed covers displacements that the elements represent; "
-                  "\"Dirichlet->"
-                      << name << "\" is not, at (" << x(e * n + q, 0) << ", " << x(e * n + q, 1)
-                      << "). Write \"estimated\"");
+      const double off = std::abs(u(e * n + q) - here);
+      largest = std::max(largest, std::abs(u(e * n + q)));
+      if (off > worst) {
+        worst = off;
+        at = e * n + q;
+      }
     }
+  const Place place = place_of_worst(host.mesh.comm(), worst, worst > 0 ? x(at, 0) : 0, worst > 0 ? x(at, 1) : 0);
+  RPC_REQUIRE(place.off <= 1e-10 * max_all(host.mesh.comm(), largest),
+              "deck: \"Adapt->Error Bound\" = guaranteed covers displacements that the elements represent; "
+              "\"Dirichlet->"
+                  << name << "\" is not, at (" << place.x << ", " << place.y << "). Write \"estimated\"");
 }
 
 /// load(f, j, i) += the coefficients of the tractions on a side.
@@ -180,14 +204,18 @@ std::string not_covered(const contact::ContactOptions &options, const std::strin
 }
 
 /// Whether the gap between the nodes is what the elements make of it there.
-void require_represented_gap(const contact::ContactOptions &options, const OnHost &host, const ContactFacets &c,
+void require_represented_gap(const contact::ContactOptions &options, const Comm &comm, const ContactFacets &c,
                              const std::vector<OfFacet> &gap)
 {
   constexpr int num_points = OnHost::points_of_fields;
   const Gauss rule = gauss(num_points);
-  const HostView<double **> x = host.points(c.facet, rule);
+  const HostView<double **> x("rpc::bound::points", c.ends.size() * num_points, 2);
+  for (std::size_t e = 0; e < c.ends.size(); ++e)
+    for (int q = 0; q < num_points; ++q)
+      for (int d = 0; d < 2; ++d)
+        x(e * num_points + q, d) = c.ends[e][0][d] + rule.point[q] * (c.ends[e][1][d] - c.ends[e][0][d]);
   HostView<double *> field;
-  if (!options.obstacle.exists()) field = evaluate(options.gap, x, options.path + "->Gap", host.mesh.comm(), true);
+  if (!options.obstacle.exists()) field = evaluate(options.gap, x, options.path + "->Gap", comm, true);
   for (std::size_t e = 0; e < c.facet.size(); ++e)
     for (int q = 0; q < num_points; ++q) {
       const double here = at_point(c.order, gap[e], rule.point[q]);
@@ -228,36 +256,15 @@ DeviceView<char *> where_friction_acts(const contact::ContactNodes &points)
   return acting;
 }
 
-/// What friction is at contact points, along the side's tangent; 0 where there is none.
-struct FrictionAtPoints {
-  std::vector<double> from, traction;
-  std::vector<char> acts;
-
-  FrictionAtPoints(const contact::ContactNodes &points, const HostView<double **> &q)
-      : from(points.size(), 0.), traction(from), acts(points.size(), 0)
-  {
-    if (!points.friction.exists()) return;
-    const auto any = to_host(where_friction_acts(points));
-    const auto normal = to_host(points.normal), start = to_host(points.friction.from);
-    for (LO i = 0; i < points.size(); ++i) {
-      const auto along = tangent_of({normal(i, 0), normal(i, 1)});
-      for (int d = 0; d < 2; ++d) from[i] += along[d] * start(i, d);
-      for (int d = 0; d < 2 && q.extent(0) > 0; ++d) traction[i] += along[d] * q(i, d);
-      acts[i] = any(i);
-    }
-  }
-};
-
 /// Friction at a facet whose last point has been added to the side.
-void add_friction(const contact::ContactOptions &options, const FrictionAtPoints &points, const int first,
+void add_friction(const contact::ContactOptions &options, const std::vector<SidePoint> &points,
                   const std::array<int, 3> &of_facet, const OfFacet &pressure, ContactFacets &c)
 {
   const double mu = law(options, 3), s_0 = law(options, 4), s_max = law(options, 5);
   OfFacet q{}, from{}, s{};
   for (int a = 0; a <= c.order; ++a) {
-    const int i = first + of_facet[a];
-    q[a] = points.traction[i];
-    from[a] = points.from[i];
+    q[a] = points[of_facet[a]].friction;
+    from[a] = points[of_facet[a]].slip_from;
     s[a] = contact::friction_bound(pressure[a], {mu, s_0, s_max});
   }
   s = mu > 0 ? not_negative(bernstein(c.order, s)) : OfFacet{s[0], s[0], s[0]};
@@ -267,91 +274,165 @@ void add_friction(const contact::ContactOptions &options, const FrictionAtPoints
   c.friction.limit_of.push_back(s);
 }
 
-/// What the contact law, the pressures and the normals are at the facets of a side.
+/// The numbers of this rank's points of a side, along the side's tangent where they are vectors.
+std::vector<SidePoint> own_points(const contact::ContactNodes &points, const int k, const OnHost &host,
+                                  const PointTractions &solution)
+{
+  const auto node = to_host(points.node);
+  const auto weight = to_host(points.weight), gap = to_host(points.gap), dent = to_host(points.dent);
+  const auto free_gap = to_host(points.free_gap);
+  const auto normal = to_host(points.normal), direction = to_host(points.direction);
+  const auto fixed = to_host(points.fixed);
+  const bool rubs = points.friction.exists();
+  const auto from = to_host(points.friction.from);
+  const auto acts = to_host(rubs ? where_friction_acts(points) : DeviceView<char *>());
+  std::vector<SidePoint> all;
+  for (int i = points.first(k); i < points.first(k + 1); ++i) {
+    SidePoint p{};
+    p.gid = static_cast<double>(host.mesh.node_gid(node(i)));
+    p.weight = weight(i);
+    p.pressure = solution.pressure(i);
+    p.gap = gap(i);
+    p.dent = dent(i);
+    p.free_gap = free_gap(i);
+    p.fixed = fixed(i);
+    p.acts = rubs && acts(i);
+    for (int d = 0; d < 2; ++d) {
+      p.place[d] = host.coords(node(i), d);
+      p.normal[d] = normal(i, d);
+      p.direction[d] = direction(i, d);
+    }
+    const auto along = tangent_of({p.normal[0], p.normal[1]});
+    for (int d = 0; d < 2 && rubs; ++d) p.slip_from += along[d] * from(i, d);
+    for (int d = 0; d < 2 && solution.along.extent(0) > 0; ++d) p.friction += along[d] * solution.along(i, d);
+    all.push_back(p);
+  }
+  return all;
+}
+
+/// A facet of a side, for all ranks.
+struct SideFacet {
+  double gid[3];     // of its ends and its middle, -1: none
+  double ends[2][2]; // [m]
+  double block, modulus, prescribed;
+};
+
+/// What ranks hold, as rows of numbers. @return that of all ranks
+template <class Row>
+std::vector<Row> rows_of_all(const Comm &comm, const std::vector<Row> &mine)
+{
+  constexpr std::size_t width = sizeof(Row) / sizeof(double);
+  static_assert(sizeof(Row) == width * sizeof(double), "numbers alone");
+  std::vector<double> numbers(mine.size() * width);
+  if (!mine.empty()) std::memcpy(numbers.data(), mine.data(), mine.size() * sizeof(Row));
+  numbers = gathered_by_all(comm, numbers);
+  std::vector<Row> all(numbers.size() / width);
+  if (!all.empty()) std::memcpy(static_cast<void *>(all.data()), numbers.data(), all.size() * sizeof(Row));
+  return all;
+}
+
+std::vector<SideFacet> own_facets(const analysis::Problem &problem, const OnHost &host, const std::vector<LO> &facets,
+                                  const HostView<char *[2]> &prescribed)
+{
+  const auto block = to_host(host.mesh.block);
+  const auto lame = to_host(fem::lame_table(problem.discretization(), problem.model().materials));
+  std::vector<SideFacet> all;
+  for (const LO f : facets) {
+    if (host.cell(f, 0) >= host.mesh.num_owned_cells) continue;
+    SideFacet s{};
+    const LO at[3] = {host.node(f, 0), host.node(f, 1), host.middle(f)};
+    for (int a = 0; a < 3; ++a) s.gid[a] = at[a] < 0 ? -1 : static_cast<double>(host.mesh.node_gid(at[a]));
+    for (int a = 0; a < 2; ++a)
+      for (int d = 0; d < 2; ++d) s.ends[a][d] = host.coords(at[a], d);
+    s.block = block(host.cell(f, 0));
+    const double lambda = lame(block(host.cell(f, 0)), 0), mu = lame(block(host.cell(f, 0)), 1);
+    s.modulus = mu * (3 * lambda + 2 * mu) / (lambda + mu);
+    s.prescribed = prescribed(f, 0) || prescribed(f, 1);
+    all.push_back(s);
+  }
+  return all;
+}
+
+/// What the contact law, the pressures and the normals are at the facets of a side, the same on all ranks.
 ContactFacets contact_side(const analysis::Problem &problem, const analysis::Model &model, const analysis::Step &step,
                            const OnHost &host, const int k, const PointTractions &solution,
                            const HostView<char *[2]> &prescribed)
 {
   const contact::ContactOptions &options = model.contact[k];
-  const contact::ContactNodes &points = step.contact;
-  const auto node = to_host(points.node);
-  const auto weight = to_host(points.weight), gap = to_host(points.gap), dent = to_host(points.dent);
-  const auto normal = to_host(points.normal), direction = to_host(points.direction);
-  const auto fixed = to_host(points.fixed);
-  const auto block = to_host(host.mesh.block);
-  const auto lame = to_host(fem::lame_table(problem.discretization(), problem.model().materials));
+  const Comm &comm = host.mesh.comm();
   ContactFacets c;
   c.order = host.mesh.element.order;
   c.rise = law(options, 1);
   c.spring = 1 / law(options, 2);
-  c.facet = host.facets_of(host.mesh.side(options.side, options.path));
-  std::map<LO, int> point_at;
-  const int first = points.first(k), last = points.first(k + 1);
-  for (int i = first; i < last; ++i) point_at[node(i)] = i - first;
-  c.free.resize(last - first);
-  for (int i = first; i < last; ++i) {
-    c.free[i - first] = !fixed(i) && weight(i) > 0;
-    c.force.push_back(weight(i) * solution.pressure(i));
-  }
-  c.place.resize(last - first);
-  const FrictionAtPoints friction(points, solution.along);
-  c.friction.acts = options.has_friction() && points.friction.anywhere;
-  for (int i = first; i < last; ++i) {
-    c.friction.force.push_back(weight(i) * friction.traction[i]);
-    c.friction.free.push_back(friction.acts[i] && weight(i) > 0);
+  const std::vector<LO> local = host.facets_of(host.mesh.side(options.side, options.path));
+  std::vector<SideFacet> facets = rows_of_all(comm, own_facets(problem, host, local, prescribed));
+  c.points = rows_of_all(comm, own_points(step.contact, k, host, solution));
+  if (facets.empty()) return c;
+  std::array<double, 2> along{facets[0].ends[1][0] - facets[0].ends[0][0], facets[0].ends[1][1] - facets[0].ends[0][1]};
+  const double size = std::hypot(along[0], along[1]);
+  for (double &x : along) x /= size;
+  const auto place = [&](const double *const x) { return along[0] * x[0] + along[1] * x[1]; };
+  std::sort(facets.begin(), facets.end(),
+            [&](const SideFacet &a, const SideFacet &b) { return place(a.ends[0]) < place(b.ends[0]); });
+  std::sort(c.points.begin(), c.points.end(),
+            [&](const SidePoint &a, const SidePoint &b) { return place(a.place) < place(b.place); });
+  std::map<std::pair<GO, GO>, LO> local_at;
+  for (const LO f : local) local_at[{host.mesh.node_gid(host.node(f, 0)), host.mesh.node_gid(host.node(f, 1))}] = f;
+  std::map<double, int> point_at;
+  c.friction.acts = options.has_friction() && step.contact.friction.anywhere;
+  for (std::size_t i = 0; i < c.points.size(); ++i) {
+    const SidePoint &p = c.points[i];
+    point_at[p.gid] = static_cast<int>(i);
+    c.free.push_back(p.fixed == 0 && p.weight > 0);
+    c.force.push_back(p.weight * p.pressure);
+    c.place.push_back(place(p.place));
+    c.friction.force.push_back(p.weight * p.friction);
+    c.friction.free.push_back(p.acts != 0 && p.weight > 0);
   }
   std::vector<OfFacet> gaps;
-  std::map<int, std::set<int>> blocks_at; // of the points
-  std::array<double, 2> along{};
-  for (const LO f : c.facet) {
-    RPC_REQUIRE(!prescribed(f, 0) && !prescribed(f, 1), not_covered(options, "displacements are prescribed on it too"));
-    const LO at[3] = {host.node(f, 0), host.node(f, 1), host.middle(f)};
-    const std::array<double, 2> e = host.edge(f);
-    if (c.length.empty()) along = {e[0] / host.length_of(f), e[1] / host.length_of(f)};
-    c.length.push_back(host.length_of(f));
-    c.ends.push_back({Point{host.coords(at[0], 0), host.coords(at[0], 1), 0},
-                      Point{host.coords(at[1], 0), host.coords(at[1], 1), 0}});
+  std::map<int, std::set<double>> blocks_at; // of the points
+  for (const SideFacet &s : facets) {
+    RPC_REQUIRE(s.prescribed == 0, not_covered(options, "displacements are prescribed on it too"));
+    const std::array<double, 2> e{s.ends[1][0] - s.ends[0][0], s.ends[1][1] - s.ends[0][1]};
+    const auto here = local_at.find({static_cast<GO>(s.gid[0]), static_cast<GO>(s.gid[1])});
+    c.facet.push_back(here == local_at.end() ? -1 : here->second);
+    c.length.push_back(std::hypot(e[0], e[1]));
+    c.ends.push_back({Point{s.ends[0][0], s.ends[0][1], 0}, Point{s.ends[1][0], s.ends[1][1], 0}});
     RPC_REQUIRE(std::abs(e[0] * along[1] - e[1] * along[0]) <= 1e-10 * c.length.back(),
                 not_covered(options, "it has a bend, or is curved"));
     std::array<int, 3> of_facet{-1, -1, -1};
-    OfFacet g{};
+    OfFacet g{}, p{}, w{}, limit{};
+    const double xi = law(options, 0);
     for (int a = 0; a <= c.order; ++a) {
-      const auto found = point_at.find(at[a]);
+      const auto found = point_at.find(s.gid[a]);
       RPC_REQUIRE(found != point_at.end(), not_covered(options, "the normal misses the foundation in a node"));
       of_facet[a] = found->second;
-      const int i = first + found->second;
-      g[a] = gap(i);
-      c.place[of_facet[a]] = along[0] * host.coords(at[a], 0) + along[1] * host.coords(at[a], 1);
-      if (c.normal.size() < c.length.size()) c.normal.push_back({normal(i, 0), normal(i, 1)});
+      const SidePoint &point = c.points[of_facet[a]];
+      g[a] = point.gap;
+      p[a] = point.pressure;
+      w[a] = point.dent;
+      limit[a] = xi + c.rise * w[a];
+      blocks_at[of_facet[a]].insert(s.block);
+      if (a == 0) c.normal.push_back({point.normal[0], point.normal[1]});
       const std::array<double, 2> &nu = c.normal.back();
-      RPC_REQUIRE(std::abs(normal(i, 0) - nu[0]) + std::abs(normal(i, 1) - nu[1]) <= 1e-10,
+      RPC_REQUIRE(std::abs(point.normal[0] - nu[0]) + std::abs(point.normal[1] - nu[1]) <= 1e-10,
                   not_covered(options, "its normals differ within a facet"));
-      RPC_REQUIRE(fixed(i) || std::abs(direction(i, 0)) + std::abs(direction(i, 1)) > 0,
+      RPC_REQUIRE(point.fixed != 0 || std::abs(point.direction[0]) + std::abs(point.direction[1]) > 0,
                   not_covered(options, "a node has no direction"));
     }
     c.point.push_back(of_facet);
-    const double xi = law(options, 0);
-    OfFacet p{}, w{}, limit{};
-    for (int a = 0; a <= c.order; ++a) {
-      p[a] = solution.pressure(first + of_facet[a]);
-      w[a] = dent(first + of_facet[a]);
-      limit[a] = xi + c.rise * w[a];
-      blocks_at[of_facet[a]].insert(block(host.cell(f, 0)));
-    }
     c.pressure.push_back(p);
-    c.dent.push_back(w);
     c.limit_of.push_back({xi, xi, xi});
     if (c.rise > 0 && !contact::is_rigid(xi)) c.limit_of.back() = not_negative(bernstein(c.order, limit));
-    add_friction(options, friction, first, of_facet, p, c);
+    add_friction(options, c.points, of_facet, p, c);
     gaps.push_back(g);
-    const double lambda = lame(block(host.cell(f, 0)), 0), mu = lame(block(host.cell(f, 0)), 1);
-    c.modulus = mu * (3 * lambda + 2 * mu) / (lambda + mu);
+    c.modulus = s.modulus;
   }
   for (std::size_t e = 0; e < c.facet.size(); ++e) // where materials meet pressures jump, and a node has a mean
     for (int a = 0; a < 2; ++a)
       if (blocks_at[c.point[e][a]].size() > 1)
         c.pressure[e][a] = c.order == 1 ? c.pressure[e][1 - a] : 2 * c.pressure[e][2] - c.pressure[e][1 - a];
-  require_represented_gap(options, host, c, gaps);
+  require_represented_gap(options, comm, c, gaps);
   return c;
 }
 
@@ -407,6 +488,7 @@ BoundaryTractions with_contact(const BoundaryTractions &loads, const std::vector
   Kokkos::deep_copy(load, loads.load);
   for (std::size_t s = 0; s < sides.size(); ++s)
     for (std::size_t e = 0; e < sides[s].facet.size(); ++e) {
+      if (sides[s].facet[e] < 0) continue;
       const OfFacet p = legendre_of(sides[s].order, contact[s].pressure[e]);
       const bool rubs = sides[s].friction.acts;
       const OfFacet q = rubs ? legendre_of(sides[s].order, contact[s].friction[e]) : OfFacet{};

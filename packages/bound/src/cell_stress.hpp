@@ -19,6 +19,8 @@ struct CellInput {
   Facets facets;
   ReferenceStress reference;
 
+  LO num_owned_cells = 0; ///< the first ones
+
   LO num_cells() const { return static_cast<LO>(cells.extent(0)); }
 };
 

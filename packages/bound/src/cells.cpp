@@ -226,24 +226,26 @@ void add_up(const CellInput &in, const CellForms &forms, const Tractions &t, con
   Kokkos::fence();
 }
 
-StressDifference stress_difference(const CellInput &in, const Tractions &t, const Vector &u,
+StressDifference stress_difference(const CellInput &in, const Comm &comm, const Tractions &t, const Vector &u,
                                    const DeviceView<double *> &of_cell)
 {
   StressDifference d;
-  Kokkos::parallel_reduce("rpc::bound::stress_difference", device_range(in.num_cells()),
+  Kokkos::parallel_reduce("rpc::bound::stress_difference", device_range(static_cast<LO>(of_cell.extent(0))),
                           Difference{in, device_read(u), t, of_cell, in.reference.degree}, d.energy,
                           Kokkos::Max<double>(d.imbalance), Kokkos::Max<double>(d.force));
-  d.imbalance = std::max(d.imbalance, 0.);
-  d.force = std::max(d.force, 0.);
+  d.energy = sum_all(comm, d.energy);
+  d.imbalance = max_all(comm, std::max(d.imbalance, 0.));
+  d.force = max_all(comm, std::max(d.force, 0.));
   return d;
 }
 
-double norm_of_lifted_loads(const CellInput &in, const LiftedLoads &lifted, const DeviceView<double ***> &load)
+double norm_of_lifted_loads(const CellInput &in, const Comm &comm, const LiftedLoads &lifted,
+                            const DeviceView<double ***> &load)
 {
   const int k = in.reference.degree, beyond = ReferenceStress::degree_of_loads - k, sides = in.reference.sides;
   double squared = 0;
   Kokkos::parallel_reduce(
-      "rpc::bound::lifted_loads", device_range(in.num_cells()),
+      "rpc::bound::lifted_loads", device_range(in.num_owned_cells),
       KOKKOS_LAMBDA(const LO c, double &sum) {
         double x[4 * ReferenceStress::degree_of_loads * 2] = {};
         bool any = false;
@@ -272,7 +274,7 @@ double norm_of_lifted_loads(const CellInput &in, const LiftedLoads &lifted, cons
             for (int j = 0; j < lifted.columns; ++j) sum += s[p] * x[i] * lifted.energy(p, i, j) * x[j];
       },
       squared);
-  return std::sqrt(std::max(squared, 0.));
+  return std::sqrt(std::max(sum_all(comm, squared), 0.));
 }
 
 DeviceView<double ***> nodal_forces(const CellInput &in, const fem::Discretization &d, const Vector &u)

@@ -18,7 +18,7 @@ struct CellForms {
   DeviceView<double **> b;  ///< (cells, tractions)
 };
 
-/// @param u  (owned dofs) the displacement whose stress the others are compared with [m]
+/// @param u  (overlap dofs) the displacement whose stress the others are compared with [m]
 CellForms cell_forms(const CellInput &in, const Vector &u);
 
 /// The derivative of the sum of the energies by the tractions, or with linear = false A x.
@@ -26,19 +26,20 @@ CellForms cell_forms(const CellInput &in, const Vector &u);
 void add_up(const CellInput &in, const CellForms &forms, const Tractions &t, bool linear,
             const DeviceView<double **> &scratch, const Tractions &sum);
 
-/// What the stresses of tractions leave.
+/// What the stresses of tractions leave, on all ranks.
 struct StressDifference {
   double energy = 0;    ///< |sigma - C eps(u)|^2 / 2 over the body [J], in 2D per m
   double imbalance = 0; ///< largest force or moment, by the size of the cell, that is out of balance on a cell [N]
   double force = 0;     ///< largest force of a traction on a cell [N]
 };
-/// @param of_cell  (cells) the energy of each, out
-StressDifference stress_difference(const CellInput &in, const Tractions &t, const Vector &u,
+/// Collective. @param of_cell  (owned cells) the energy of each, out
+StressDifference stress_difference(const CellInput &in, const Comm &comm, const Tractions &t, const Vector &u,
                                    const DeviceView<double *> &of_cell);
 
 /// Norm |tau| of stresses that lift what the loads of facets have beyond degree k, in the norm of C^-1 [J^(1/2)].
-/// @param load  (facets, degrees, 2) coefficients of the tractions on the boundary, by unit of the parameter
-double norm_of_lifted_loads(const CellInput &in, const LiftedLoads &lifted, const DeviceView<double ***> &load);
+/// Collective. @param load  (facets, degrees, 2) coefficients of the tractions on the boundary, by unit of the parameter
+double norm_of_lifted_loads(const CellInput &in, const Comm &comm, const LiftedLoads &lifted,
+                            const DeviceView<double ***> &load);
 
 /// Moments in the cells: Q_a = int C eps(u) grad N_a - int f N_a.
 /// @return (cells, nodes, 2) [N]

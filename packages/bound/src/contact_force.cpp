@@ -128,7 +128,10 @@ UnitPress unit_press(const analysis::Problem &problem, const double time, const 
         }
   const analysis::Problem body(problem.discretization().mesh, pressed(model, sides, k, cut, near), time);
   analysis::SolverState state(body, options);
-  const analysis::StepSolution s = analysis::solve_step(body, body.step(time), state, {});
+  analysis::StepOptions rough; // any w gives an interval
+  rough.newton.residual_tolerance = rough.uzawa.tolerance = 1e-4;
+  rough.looks_between_nodes = false;
+  const analysis::StepSolution s = analysis::solve_step(body, body.step(time), state, rough);
   if (s.uzawa.converged)
     press.w = s.u;
   else

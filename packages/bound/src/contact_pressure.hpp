@@ -24,19 +24,28 @@ struct FrictionFacets {
   std::vector<char> free;         ///< (points) whether it can act there
 };
 
-/// A straight contact side.
+/// A contact point, as numbers for messages between ranks.
+struct SidePoint {
+  double gid; ///< of its node
+  double place[2], normal[2], direction[2];
+  double weight, pressure, friction;     ///< [m], [Pa], [Pa] along the tangent
+  double gap, dent, free_gap, slip_from; ///< [m]
+  double fixed, acts;                    ///< 0 or 1: as contact::ContactNodes has it; whether friction acts
+};
+
+/// A straight contact side, the same on all ranks: its facets and points one after the other.
 struct ContactFacets {
+  std::vector<SidePoint> points;
   int order = 1;
   std::vector<OfFacet> limit_of; ///< (facets) Bernstein coefficients of the yield limit xi + H w [Pa], may be infinite
   double rise = 0;               ///< H [Pa/m]
   double spring = 0;             ///< c of the foundation's springs [m/Pa]
   FrictionFacets friction;
   double modulus = 1;                        ///< E of the body [Pa]
-  std::vector<LO> facet;                     ///< numbers of the facets
+  std::vector<LO> facet;                     ///< numbers of the facets on this rank; -1: it has it not
   std::vector<double> length;                ///< (facets) [m]
   std::vector<std::array<double, 2>> normal; ///< (facets) of the contact law
   std::vector<std::array<Point, 2>> ends;    ///< (facets) where they begin and end [m]
-  std::vector<OfFacet> dent;                 ///< (facets) w of earlier steps at the nodes [m]
   std::vector<std::array<int, 3>>
       point;                 ///< (facets) contact points at both ends and in the middle, numbered from 0; the last -1
   std::vector<double> place; ///< (points) along the side [m]

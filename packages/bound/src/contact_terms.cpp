@@ -2,6 +2,7 @@
 #include "contact_terms.hpp"
 
 #include "rpc/contact/law/foundation.hpp"
+#include "rpc/core/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,28 +12,46 @@ namespace rpc::bound
 namespace
 {
 
+/// -1: it is another rank's.
+LO owned_node(const SidePoint &point, const mesh::Mesh &mesh)
+{
+  const GO lid = static_cast<GO>(point.gid) - mesh.owned_nodes->getMinGlobalIndex();
+  return lid >= 0 && lid < mesh.num_owned_nodes() ? static_cast<LO>(lid) : -1;
+}
+
 /// Whether the foundation gives way to nothing.
 bool is_rigid(const ContactFacets &c)
 {
   return c.spring == 0 && !c.limit_of.empty() && contact::is_rigid(c.limit_of[0][0]);
 }
 
-/// Penetrations of a side at the nodes of its facets. What rounding leaves of a point that is held at the surface is 0.
-std::vector<OfFacet> depths(const ContactFacets &c, const int first, const contact::ContactNodes &points,
-                            const HostView<double *> &u)
+using OfPoints = std::vector<std::array<double, 2>>;
+
+/// (points) A displacement at the points of a side, on all ranks.
+OfPoints at_points(const ContactFacets &c, const mesh::Mesh &mesh, const HostView<double *> &u)
 {
-  const auto node = to_host(points.node);
-  const auto normal = to_host(points.normal);
-  const auto gap = to_host(points.gap), dent = to_host(points.dent);
+  std::vector<double> mine(2 * c.points.size(), 0.);
+  for (std::size_t i = 0; i < c.points.size(); ++i) {
+    const LO node = owned_node(c.points[i], mesh);
+    for (int d = 0; d < 2 && node >= 0; ++d) mine[2 * i + d] = u(dof(2, node, d));
+  }
+  const std::vector<double> all = summed(mesh.comm(), mine);
+  OfPoints of(c.points.size());
+  for (std::size_t i = 0; i < of.size(); ++i) of[i] = {all[2 * i], all[2 * i + 1]};
+  return of;
+}
+
+/// Penetrations of a side at the nodes of its facets. What rounding leaves of a point that is held at the surface is 0.
+std::vector<OfFacet> depths(const ContactFacets &c, const OfPoints &u)
+{
   std::vector<OfFacet> all;
   for (const auto &of_facet : c.point) {
     OfFacet v{};
-    for (int a = 0; a < 3; ++a) {
-      if (of_facet[a] < 0) continue;
-      const int i = first + of_facet[a];
-      const double x = normal(i, 0) * u(dof(2, node(i), 0)), y = normal(i, 1) * u(dof(2, node(i), 1));
-      v[a] = x + y - gap(i) - dent(i);
-      if (std::abs(v[a]) <= 1e-14 * (std::abs(x) + std::abs(y) + std::abs(gap(i)) + dent(i))) v[a] = 0;
+    for (int a = 0; a <= c.order; ++a) {
+      const SidePoint &p = c.points[of_facet[a]];
+      const double x = p.normal[0] * u[of_facet[a]][0], y = p.normal[1] * u[of_facet[a]][1];
+      v[a] = x + y - p.gap - p.dent;
+      if (std::abs(v[a]) <= 1e-14 * (std::abs(x) + std::abs(y) + std::abs(p.gap) + p.dent)) v[a] = 0;
     }
     all.push_back(v);
   }
@@ -40,18 +59,15 @@ std::vector<OfFacet> depths(const ContactFacets &c, const int first, const conta
 }
 
 /// Slips of a side at the nodes of its facets.
-std::vector<OfFacet> slips(const ContactFacets &c, const int first, const contact::ContactNodes &points,
-                           const HostView<double *> &u)
+std::vector<OfFacet> slips(const ContactFacets &c, const OfPoints &u)
 {
-  const auto node = to_host(points.node);
   std::vector<OfFacet> all;
   for (std::size_t f = 0; f < c.point.size(); ++f) {
     const std::array<double, 2> along = tangent_of(c.normal[f]);
     OfFacet e{};
     for (int a = 0; a <= c.order; ++a) {
-      const int i = first + c.point[f][a];
-      const double x = along[0] * u(dof(2, node(i), 0)), y = along[1] * u(dof(2, node(i), 1)),
-                   from = c.friction.slip_from[f][a];
+      const std::array<double, 2> &here = u[c.point[f][a]];
+      const double x = along[0] * here[0], y = along[1] * here[1], from = c.friction.slip_from[f][a];
       e[a] = x + y - from;
       if (std::abs(e[a]) <= 1e-14 * (std::abs(x) + std::abs(y) + std::abs(from))) e[a] = 0;
     }
@@ -62,37 +78,39 @@ std::vector<OfFacet> slips(const ContactFacets &c, const int first, const contac
 
 } // namespace
 
-void move_out(const ContactFacets &c, const int first, const contact::ContactNodes &points, const HostView<double *> &u)
+void move_out(const ContactFacets &c, const mesh::Mesh &mesh, const HostView<double *> &u)
 {
   if (!is_rigid(c)) return;
-  const auto node = to_host(points.node);
-  const auto direction = to_host(points.direction);
-  const auto gap = to_host(points.free_gap);
+  OfPoints at = at_points(c, mesh, u);
   const auto depth = [&](const int i) {
-    return direction(i, 0) * u(dof(2, node(i), 0)) + direction(i, 1) * u(dof(2, node(i), 1)) - gap(i);
+    const SidePoint &p = c.points[i];
+    return p.direction[0] * at[i][0] + p.direction[1] * at[i][1] - p.free_gap;
   };
   const auto move = [&](const int i, const double by) {
-    const double squared = direction(i, 0) * direction(i, 0) + direction(i, 1) * direction(i, 1);
-    for (int d = 0; d < 2 && squared > 0; ++d) u(dof(2, node(i), d)) -= by / squared * direction(i, d);
+    const double *const direction = c.points[i].direction;
+    const double squared = direction[0] * direction[0] + direction[1] * direction[1];
+    for (int d = 0; d < 2 && squared > 0; ++d) at[i][d] -= by / squared * direction[d];
   };
-  for (const auto &of_facet : c.point)
-    for (const int a : of_facet)
-      if (a >= 0) move(first + a, std::max(0., depth(first + a)));
-  if (c.order == 1) return;
+  for (std::size_t i = 0; i < c.points.size(); ++i) move(i, std::max(0., depth(i)));
   for (const auto &of_facet : c.point) {
-    const OfFacet v{depth(first + of_facet[0]), depth(first + of_facet[1]), depth(first + of_facet[2])};
-    move(first + of_facet[2], std::max(0., v[2] - lowered_middle(v)));
+    if (c.order == 1) break;
+    const OfFacet v{depth(of_facet[0]), depth(of_facet[1]), depth(of_facet[2])};
+    move(of_facet[2], std::max(0., v[2] - lowered_middle(v)));
+  }
+  for (std::size_t i = 0; i < c.points.size(); ++i) {
+    const LO node = owned_node(c.points[i], mesh);
+    for (int d = 0; d < 2 && node >= 0; ++d) u(dof(2, node, d)) = at[i][d];
   }
 }
 
-ContactTerms contact_terms(const std::vector<ContactFacets> &sides, const contact::ContactNodes &points,
-                           const HostView<double *> &u)
+ContactTerms contact_terms(const std::vector<ContactFacets> &sides, const mesh::Mesh &mesh, const HostView<double *> &u)
 {
   ContactTerms terms;
   for (std::size_t k = 0; k < sides.size(); ++k) {
     const ContactFacets &c = sides[k];
-    const auto v = depths(c, points.first(k), points, u);
-    const auto e = slips(c, points.first(k), points, u);
+    const OfPoints at = at_points(c, mesh, u);
+    const auto v = depths(c, at);
+    const auto e = slips(c, at);
     SideTractions t{fitted_pressure(c, v), {}};
     if (c.friction.acts) t.friction = fitted_friction(c, e);
     std::vector<double> gap_of(c.facet.size(), 0.);

@@ -9,9 +9,10 @@
 namespace rpc::bound
 {
 
-/// Moves u so that the contact points of a rigid foundation lie nowhere in it; elsewhere it stays.        doc/theory.md (13.3)
-/// @param first  point of the side
-void move_out(const ContactFacets &c, int first, const contact::ContactNodes &points, const HostView<double *> &u);
+/// Moves u so that the contact points of a rigid foundation lie nowhere in it; elsewhere it stays. Collective.
+///                                                                                                      doc/theory.md (13.3)
+/// @param u  (owned dofs)
+void move_out(const ContactFacets &c, const mesh::Mesh &mesh, const HostView<double *> &u);
 
 /// What contact sides have in the energy of a displacement and in its bound.
 struct ContactTerms {
@@ -21,8 +22,8 @@ struct ContactTerms {
   double gap = 0;      ///< int psi(v) + psi*(p) - p v + s |e| - q e [J]                    (13.11), (13.12)
   std::string missing; ///< why there is no bound; else empty
 };
-/// Collective. @param u  out of rigid foundations
-ContactTerms contact_terms(const std::vector<ContactFacets> &sides, const contact::ContactNodes &points,
+/// Collective. @param u  (owned dofs) out of rigid foundations
+ContactTerms contact_terms(const std::vector<ContactFacets> &sides, const mesh::Mesh &mesh,
                            const HostView<double *> &u);
 
 } // namespace rpc::bound

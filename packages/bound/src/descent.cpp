@@ -5,8 +5,6 @@
 
 namespace rpc::bound
 {
-namespace
-{
 
 double inner_product(const Tractions &x, const Tractions &y)
 {
@@ -16,6 +14,9 @@ double inner_product(const Tractions &x, const Tractions &y)
       KOKKOS_LAMBDA(const LO i, double &part) { part += x(i) * y(i); }, sum);
   return sum;
 }
+
+namespace
+{
 
 /// x <- a x + b y.
 void combine(const double a, const Tractions &x, const double b, const Tractions &y)
@@ -28,9 +29,10 @@ void combine(const double a, const Tractions &x, const double b, const Tractions
 
 } // namespace
 
-Descent::Descent(Derivative derivative, Answer answer, const Tractions &t)
-    : derivative_(std::move(derivative)), answer_(std::move(answer)), t_(t), g_("rpc::bound::g", t.extent(0)),
-      z_("rpc::bound::z", t.extent(0)), d_("rpc::bound::d", t.extent(0)), Ad_("rpc::bound::Ad", t.extent(0))
+Descent::Descent(Derivative derivative, Answer answer, Product product, const Tractions &t)
+    : derivative_(std::move(derivative)), answer_(std::move(answer)), product_(std::move(product)), t_(t),
+      g_("rpc::bound::g", t.extent(0)), z_("rpc::bound::z", t.extent(0)), d_("rpc::bound::d", t.extent(0)),
+      Ad_("rpc::bound::Ad", t.extent(0))
 {
   derivative_(t_, true, g_);
 }
@@ -38,12 +40,12 @@ Descent::Descent(Derivative derivative, Answer answer, const Tractions &t)
 double Descent::step()
 {
   answer_(g_, z_);
-  const double rho = inner_product(g_, z_);
+  const double rho = product_(g_, z_);
   if (!(rho > 0)) return 0;
   combine(rho_ > 0 ? rho / rho_ : 0, d_, -1, z_);
   rho_ = rho;
   derivative_(d_, false, Ad_);
-  const double curvature = inner_product(d_, Ad_);
+  const double curvature = product_(d_, Ad_);
   if (!(curvature > 0)) return 0;
   const double length = rho / curvature;
   combine(1, t_, length, d_);

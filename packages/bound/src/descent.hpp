@@ -8,6 +8,9 @@
 namespace rpc::bound
 {
 
+/// The inner product of all entries, on one rank.
+double inner_product(const Tractions &x, const Tractions &y);
+
 /// One step of the method of conjugate gradients after the other, which lowers the energy of the tractions. Tractions stay in balance.
 class Descent
 {
@@ -16,14 +19,17 @@ public:
   using Derivative = std::function<void(const Tractions &x, bool linear, const Tractions &y)>;
   /// z <- the answer of self-equilibrated tractions to a derivative g.
   using Answer = std::function<void(const Tractions &g, const Tractions &z)>;
+  /// The inner product of tractions, over all ranks.
+  using Product = std::function<double(const Tractions &x, const Tractions &y)>;
 
-  Descent(Derivative derivative, Answer answer, const Tractions &t);
+  Descent(Derivative derivative, Answer answer, Product product, const Tractions &t);
   /// @return by how much the energy falls [J]
   double step();
 
 private:
   Derivative derivative_;
   Answer answer_;
+  Product product_;
   Tractions t_, g_, z_, d_, Ad_;
   double rho_ = 0;
 };

@@ -95,6 +95,20 @@ struct BalanceStars {
   }
 };
 
+/// Values at ends whose vertices other ranks own.
+void take_fetched(const FacetExchange &exchange, const DeviceView<double ***> &values, const std::vector<double> &flip)
+{
+  const auto fetched = exchange.fetch(values, flip);
+  const auto row = exchange.row();
+  const int width = static_cast<int>(flip.size());
+  Kokkos::parallel_for(
+      "rpc::bound::take_fetched", device_range(static_cast<LO>(row.extent(0))), KOKKOS_LAMBDA(const LO f) {
+        for (int end = 0; end < 2; ++end)
+          for (int q = 0; q < width && row(f, end) >= 0; ++q) values(f, end, q) = fetched(row(f, end), q);
+      });
+  Kokkos::fence();
+}
+
 } // namespace
 
 DeviceView<double ***> known_moments(const CellInput &in, const BoundaryTractions &boundary)
@@ -118,7 +132,7 @@ DeviceView<double ***> known_moments(const CellInput &in, const BoundaryTraction
 }
 
 Tractions equilibrated(const CellInput &in, const BoundaryTractions &boundary, const DeviceView<double ***> &Q,
-                       const DeviceView<double ***> &mean)
+                       const DeviceView<double ***> &mean, const FacetExchange &exchange)
 {
   const int order = in.reference.degree, sides = in.reference.sides, per_facet = 2 * (order + 1);
   const Facets facets = in.facets;
@@ -126,6 +140,7 @@ Tractions equilibrated(const CellInput &in, const BoundaryTractions &boundary, c
   const auto known = known_moments(in, boundary);
   Kokkos::parallel_for("rpc::bound::balance_stars", device_range(static_cast<LO>(facets.num_spokes.extent(0))),
                        BalanceStars{in, boundary, Q, mean, known, moment});
+  take_fetched(exchange, moment, {-1, -1});
   const Tractions t("rpc::bound::tractions", static_cast<std::size_t>(facets.size()) * per_facet);
   const auto load = boundary.load;
   const auto is_known = boundary.known;
@@ -142,6 +157,23 @@ Tractions equilibrated(const CellInput &in, const BoundaryTractions &boundary, c
           for (int j = 0; j <= order; ++j)
             t(f * per_facet + 2 * j + i) = outside && is_known(f, i) ? load(f, j, i) : x[j];
         }
+      });
+  Kokkos::fence();
+  // Facets without a vertex of this rank, which may lack a cell: the rank of one of their vertices has both.
+  std::vector<double> flip;
+  for (int j = 0; j <= order; ++j) flip.insert(flip.end(), 2, side_factor(-1, j));
+  const DeviceView<double ***> at_ends("rpc::bound::at_ends", facets.size(), 2, per_facet);
+  Kokkos::parallel_for(
+      "rpc::bound::at_ends", device_range(facets.size()), KOKKOS_LAMBDA(const LO f) {
+        for (int q = 0; q < per_facet; ++q) at_ends(f, 0, q) = at_ends(f, 1, q) = t(f * per_facet + q);
+      });
+  Kokkos::fence();
+  const auto fetched = exchange.fetch(at_ends, flip);
+  const auto row = exchange.row();
+  Kokkos::parallel_for(
+      "rpc::bound::take_tractions", device_range(facets.size()), KOKKOS_LAMBDA(const LO f) {
+        if (row(f, 0) < 0 || row(f, 1) < 0) return;
+        for (int q = 0; q < per_facet; ++q) t(f * per_facet + q) = fetched(row(f, 0), q);
       });
   Kokkos::fence();
   return t;

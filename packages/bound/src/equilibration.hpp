@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cells.hpp"
+#include "facet_exchange.hpp"
 
 namespace rpc::bound
 {
@@ -17,9 +18,10 @@ struct BoundaryTractions {
 DeviceView<double ***> known_moments(const CellInput &in, const BoundaryTractions &boundary);
 
 /// Tractions in balance with the body force on each cell, from the moments of a Galerkin solution.     doc/theory.md (13.7)
+/// Collective.
 /// @param Q     nodal_forces() of the solution of the loads `boundary`
 /// @param mean  mean_moments() of it, to which the tractions are to be near
 Tractions equilibrated(const CellInput &in, const BoundaryTractions &boundary, const DeviceView<double ***> &Q,
-                       const DeviceView<double ***> &mean);
+                       const DeviceView<double ***> &mean, const FacetExchange &exchange);
 
 } // namespace rpc::bound

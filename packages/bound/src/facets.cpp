@@ -2,6 +2,7 @@
 #include "facets.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/core/parallel.hpp"
 #include "rpc/mesh/topology.hpp"
 
 namespace rpc::bound
@@ -114,10 +115,21 @@ Facets facets_of(const fem::Discretization &d)
   f.spoke = DeviceView<LO *>("rpc::bound::spoke", entries + nodes);
   f.toward = DeviceView<signed char *>("rpc::bound::toward", entries + nodes);
   f.place = DeviceView<int *[2]>("rpc::bound::place", count);
+  f.counts = DeviceView<char *>("rpc::bound::counts", count);
+  const auto counts = Kokkos::create_mirror_view(f.counts);
+  {
+    const auto node = to_host(f.node);
+    for (int e = 0; e < count; ++e) { // the vertex with the lower gid decides
+      const int end = mesh.node_gid(node(e, 0)) < mesh.node_gid(node(e, 1)) ? 0 : 1;
+      counts(e) = node(e, end) < mesh.num_owned_nodes();
+    }
+  }
+  Kokkos::deep_copy(f.counts, counts);
   f.num_spokes = DeviceView<int *>("rpc::bound::num_spokes", nodes);
   int wrong = 0;
   Kokkos::parallel_reduce("rpc::bound::walk", device_range(static_cast<LO>(nodes)),
                           WalkAroundVertices{f, d.node_to_cells, mesh.cells, sides}, wrong);
+  wrong = sum_all(mesh.comm(), wrong);
   RPC_REQUIRE_CODE(
       wrong == 0, ExitCode::bad_mesh,
       "deck: \"Adapt->Error Bound\" = guaranteed does not cover bodies whose parts meet in a point, and the mesh "

@@ -16,6 +16,8 @@ struct Facets {
   DeviceView<LO *[2]> node;        ///< (facets) vertices
   DeviceView<LO *> middle;         ///< (facets) middle node of order 2, else -1
 
+  DeviceView<char *> counts; ///< (facets) 1 where this rank counts it in sums over all
+
   // Stars: cells and spokes around each vertex, counterclockwise. Interior vertices have as many spokes as cells, those of the boundary
   // one more, the first and the last on the boundary.
   DeviceView<std::size_t *>
@@ -37,7 +39,8 @@ struct Facets {
   KOKKOS_INLINE_FUNCTION bool on_boundary(const LO facet) const { return cell(facet, 1) < 0; }
 };
 
-/// Of a plane mesh on one rank.
+/// Of a plane mesh. A rank has all facets of its local cells, but the stars of its own vertices alone; of facets that have none of these it may
+/// lack a cell. Collective.
 /// @throws rpc::Error (bad_mesh) where the cells at a vertex are no fan: parts of the body that meet in a point
 Facets facets_of(const fem::Discretization &d);
 

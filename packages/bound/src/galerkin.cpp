@@ -40,8 +40,9 @@ RCP<Vector> out_of_balance(const Input &in, const fem::Discretization &d, const 
   const int nodes = static_cast<int>(in.cells.extent(1)), of_facet = nodes_of_facets(in);
   const auto around = d.node_to_cells;
   const auto facets = in.facets;
+  const LO owned = d.mesh->num_owned_nodes();
   Kokkos::parallel_for(
-      "rpc::bound::forces_of_cells", device_range(d.mesh->num_owned_nodes()), KOKKOS_LAMBDA(const LO node) {
+      "rpc::bound::forces_of_cells", device_range(owned), KOKKOS_LAMBDA(const LO node) {
         for (int i = 0; i < dim; ++i) to(dof(dim, node, i)) = 0;
         for (std::size_t k = around.row(node); k < around.row(node + 1); ++k)
           for (int a = 0; a < nodes; ++a)
@@ -51,9 +52,11 @@ RCP<Vector> out_of_balance(const Input &in, const fem::Discretization &d, const 
   Kokkos::parallel_for(
       "rpc::bound::forces_of_facets", device_range(facets.size()), KOKKOS_LAMBDA(const LO f) {
         if (!facets.on_boundary(f)) return;
-        for (int a = 0; a < of_facet; ++a)
-          for (int i = 0; i < dim && node_of(facets, f, a) >= 0; ++i)
-            add_shared(to(dof(dim, node_of(facets, f, a), i)), moments(f, a, i));
+        for (int a = 0; a < of_facet; ++a) {
+          const LO node = node_of(facets, f, a);
+          for (int i = 0; i < dim && node >= 0 && node < owned; ++i)
+            add_shared(to(dof(dim, node, i)), moments(f, a, i));
+        }
       });
   Kokkos::fence();
   return r;
@@ -98,7 +101,7 @@ Solved galerkin_solution(const analysis::Problem &problem, const analysis::StepS
   std::unique_ptr<analysis::SolverState> state;
   double before = 0;
   for (int pass = 0;; ++pass) {
-    found.Q = nodal_forces(in, d, *u);
+    found.Q = nodal_forces(in, d, *fem::on_overlap(d, *u));
     const RCP<Vector> r = out_of_balance(in, d, moments, found.Q);
     fem::clear_prescribed(s.step.elastic.dirichlet, *r);
     const double left = r->norm2() / std::max(fem::internal_work(d, problem.model().materials, *u).force_norm, 1e-300);
@@ -131,7 +134,8 @@ double work_of(const fem::Discretization &d, const DeviceView<double ***> &momen
   bool loaded = false;
   for (const double f : in.force) loaded = loaded || f != 0;
   if (!loaded) return work;
-  const auto body = nodal_forces(in, d, Vector(d.owned_dofs));
+  const Vector rest(d.owned_dofs);
+  const auto body = nodal_forces(in, d, *fem::on_overlap(d, rest));
   const DeviceView<double ***> none("rpc::bound::nothing", in.facets.size(), nodes_of_facets(in), Input::dim);
   return work + out_of_balance(in, d, none, body)->dot(u);
 }

@@ -161,7 +161,7 @@ EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::Ste
   const DeviceView<double **> scratch("rpc::bound::scratch", in.num_cells(), in.reference.tractions);
   Descent descent(
       [&](const Tractions &x, const bool linear, const Tractions &y) { add_up(in, forms, x, linear, scratch, y); },
-      [&](const Tractions &g, const Tractions &z) { rings.apply(g, z); }, t);
+      [&](const Tractions &g, const Tractions &z) { rings.apply(g, z); }, inner_product, t);
   std::vector<double> falls;
   for (int step = 0; step < steps; ++step) falls.push_back(descent.step());
   const StressDifference left = stress_difference(in, forms, t, *u, of_cell);

@@ -164,8 +164,9 @@ struct FactorStars {
 
 } // namespace
 
-StarSolves::StarSolves(const CellInput &in, const BoundaryTractions &boundary, const CellForms &forms)
-    : in_(in), boundary_(boundary)
+StarSolves::StarSolves(const CellInput &in, const BoundaryTractions &boundary, const CellForms &forms,
+                       const FacetExchange &exchange)
+    : in_(in), boundary_(boundary), exchange_(exchange)
 {
   const LO nodes = static_cast<LO>(in.facets.num_spokes.extent(0));
   first_ = DeviceView<std::size_t *>("rpc::bound::first", nodes + 1);
@@ -217,17 +218,35 @@ void StarSolves::apply(const Tractions &g, const Tractions &z) const
           y[i] /= L[i * n + i];
         }
       });
+  Kokkos::fence();
+  // What the stars of both ends make of a facet; those of other ranks' vertices are fetched.
+  const DeviceView<double ***> of_end("rpc::bound::of_end", in_.facets.size(), 2, per_facet);
+  const auto row = exchange_.row();
   Kokkos::parallel_for(
       "rpc::bound::gather_stars", device_range(in_.facets.size()), KOKKOS_LAMBDA(const LO f) {
-        for (int p = 0; p < per_facet; ++p) z(f * per_facet + p) = 0;
         for (int end = 0; end < 2; ++end) {
+          if (row(f, end) >= 0) continue;
           const LO node = modes.in.facets.node(f, end);
           const int k = modes.in.facets.place(f, end);
           double M[6][StarModes::most];
           modes.of_spoke(node, k, M);
-          for (int b = 0; b < both; ++b)
-            for (int p = 0; p < per_facet; ++p)
-              z(f * per_facet + p) += M[p][b] * answer(modes.first(node) + modes.place(k, b));
+          for (int p = 0; p < per_facet; ++p) {
+            double sum = 0;
+            for (int b = 0; b < both; ++b) sum += M[p][b] * answer(modes.first(node) + modes.place(k, b));
+            of_end(f, end, p) = sum;
+          }
+        }
+      });
+  Kokkos::fence();
+  std::vector<double> flip;
+  for (int j = 0; j <= in_.reference.degree; ++j) flip.insert(flip.end(), 2, side_factor(-1, j));
+  const auto fetched = exchange_.fetch(of_end, flip);
+  Kokkos::parallel_for(
+      "rpc::bound::add_ends", device_range(in_.facets.size()), KOKKOS_LAMBDA(const LO f) {
+        for (int p = 0; p < per_facet; ++p) {
+          double sum = 0;
+          for (int end = 0; end < 2; ++end) sum += row(f, end) >= 0 ? fetched(row(f, end), p) : of_end(f, end, p);
+          z(f * per_facet + p) = sum;
         }
       });
   Kokkos::fence();

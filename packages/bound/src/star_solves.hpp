@@ -2,6 +2,7 @@
 #pragma once
 
 #include "equilibration.hpp"
+#include "facet_exchange.hpp"
 
 namespace rpc::bound
 {
@@ -12,13 +13,16 @@ class StarSolves
 {
 public:
   /// Factors the energies of all stars.
-  StarSolves(const CellInput &in, const BoundaryTractions &boundary, const CellForms &forms);
+  StarSolves(const CellInput &in, const BoundaryTractions &boundary, const CellForms &forms,
+             const FacetExchange &exchange);
   /// z <- sum over the stars of what least energy answers to the derivative g with.
+  /// Collective.
   void apply(const Tractions &g, const Tractions &z) const;
 
 private:
   CellInput in_;
   BoundaryTractions boundary_;
+  const FacetExchange &exchange_;
   DeviceView<std::size_t *> first_; // (nodes + 1) where the factor of a star begins
   DeviceView<double *> factor_;     // row by row
   DeviceView<double *> answer_;     // (3 nodes + modes of spokes)

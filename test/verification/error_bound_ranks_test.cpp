@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rpc/core/error.hpp"
+#include "run_scene.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+// Several ranks find the guaranteed bounds that one rank finds.
+
+namespace error_bound_ranks_test
+{
+namespace
+{
+
+using namespace rpc;
+
+const std::string decks = std::string(RPC_TEST_DECKS) + "/", input = decks + "../../../input/";
+
+TEST(ErrorBoundOnRanks, IsThatOfOneRank)
+{
+  const RCP<const Comm> world = Tpetra::getDefaultComm(), alone = world->split(world->getRank(), 0);
+  struct {
+    std::string deck;
+    std::vector<std::string> law;
+  } const scenes[] = {
+      {input + "beam.xml", {"Contact->Yield Stress=16", "Mesh->Cells={20, 4}"}},
+      {input + "beam.xml", {"Contact->Yield Stress=inf", "Mesh->Cells={20, 4}"}},
+      {decks + "heavy_block.xml", {"Contact->Hardening=400", "Contact->Stiffness=3e3", "Contact->Friction Bound=0.5"}}};
+  for (const auto &scene : scenes)
+    for (const std::string element : {"P1", "P2", "Q1", "Q2"}) {
+      SCOPED_TRACE(scene.law[0] + ", " + element);
+      auto deck = scene.law;
+      deck.insert(deck.end(), {"Mesh->Element=" + element, "Adapt->Error Bound=guaranteed", "Uzawa->Tolerance=1e-12",
+                               "NOX->Residual Tolerance=1e-13"});
+      const Solution several = run_scene(scene.deck, deck, world), own = run_scene(scene.deck, deck, alone);
+      ASSERT_TRUE(several.bound && own.bound);
+      const bound::EnergyBound &a = *several.bound, &b = *own.bound;
+      EXPECT_EQ(a.missing, "");
+      ASSERT_EQ(a.missing, b.missing);
+      const double size = std::abs(b.upper) + std::abs(b.lower);
+      EXPECT_NEAR(a.lower, b.lower, 1e-10 * size);
+      EXPECT_NEAR(a.upper, b.upper, 1e-10 * size);
+      for (std::size_t k = 0; k < b.steps.size(); ++k) EXPECT_NEAR(a.steps[k], b.steps[k], 1e-10 * size) << k;
+      EXPECT_NEAR(a.moved, b.moved, 1e-10 * b.energy_norm);
+      for (std::size_t k = 0; k < b.contact_force.size(); ++k) {
+        EXPECT_EQ(a.contact_force[k].missing, b.contact_force[k].missing);
+        EXPECT_NEAR(a.contact_force[k].upper, b.contact_force[k].upper, 1e-4 * (1 + b.contact_force[k].upper));
+      }
+    }
+}
+
+TEST(ErrorBoundOnRanks, IsRefusedOnAllOfThem)
+{
+  for (const std::string wrong :
+       {"Traction->top->Y=x > 1.1 ? -10 : 0", "Dirichlet->left->Y=1e-3*y^3", "Contact->Gap=1e-3*x^4"}) {
+    SCOPED_TRACE(wrong);
+    try {
+      run_scene(input + "beam.xml", {"Mesh->Cells={10, 2}", wrong, "Adapt->Error Bound=guaranteed"});
+      ADD_FAILURE() << "not refused";
+    } catch (const Error &error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input) << error.what();
+    }
+  }
+}
+
+} // namespace
+} // namespace error_bound_ranks_test
