@@ -105,6 +105,36 @@ TEST(ErrorBoundInSpace, IsZeroWhereTheElementsHaveTheSolution)
   }
 }
 
+TEST(ErrorBoundInSpace, IsWhatAdaptedMeshesStopByAndFollow)
+{
+  const double target = 0.4;
+  const Solution s = bounded({"Adapt->Target Relative Error=" + std::to_string(target), "Adapt->Meshes=nested"});
+  ASSERT_TRUE(s.adaptation);
+  EXPECT_TRUE(s.adaptation->reached) << s.adaptation->reason;
+  const auto &cycles = s.adaptation->cycles;
+  const auto relative = [](const auto &cycle) {
+    return cycle.bound->energy_norm / std::sqrt(cycle.energy_norm_squared);
+  };
+  ASSERT_GT(cycles.size(), 1u);
+  for (std::size_t k = 0; k + 1 < cycles.size(); ++k) EXPECT_GT(relative(cycles[k]), target);
+  EXPECT_LE(relative(cycles.back()), target);
+  double sum = 0;
+  const auto parts = to_host(s.bound->squared);
+  for (std::size_t c = 0; c < parts.extent(0); ++c) sum += parts(c);
+  EXPECT_EQ(static_cast<LO>(parts.extent(0)), s.discretization.mesh->num_owned_cells);
+  EXPECT_NEAR(sum, s.bound->energy_norm * s.bound->energy_norm, 1e-10 * sum);
+  ASSERT_EQ(s.bound->contact_force.size(), 1u);
+  EXPECT_NE(s.bound->contact_force[0].missing, "");
+}
+
+TEST(ErrorBoundInSpace, OfAStepWithoutDentsIsThatOfItsLoads)
+{
+  const Solution alone = bounded({"Traction->front->Z=-3"}),
+                 step = bounded({"Traction->front->Z=-3*t", "Steps->Times={0.5, 1}"});
+  EXPECT_NEAR(step.bound->upper, alone.bound->upper, 1e-9 * std::abs(alone.bound->upper));
+  EXPECT_NEAR(step.bound->lower, alone.bound->lower, 1e-6 * std::abs(alone.bound->lower));
+}
+
 TEST(ErrorBoundInSpace, IsRefusedWithWhatIsCovered)
 {
   const auto refused = [](std::vector<std::string> assignments, const std::string &part) {
@@ -123,6 +153,10 @@ TEST(ErrorBoundInSpace, IsRefusedWithWhatIsCovered)
   refused({"Mesh->Element=Q1"}, "the cells are Q1");
   refused({"Contact->Gap=0.01*x^2"}, "another than between its nodes");
   refused({"Contact->Yield Stress=5", "Contact->Hardening=3"}, "Hardening");
+  refused({"Contact->Stiffness=3"}, "is another");
+  refused({"Contact->Yield Stress=5", "Contact->Friction Bound=3"}, "is another");
+  refused({"Contact->Yield Stress=0.2", "Contact->Hardening=0", "Steps->Times={1, 2}"}, "without dents");
+  refused({"Dirichlet->left->X=0.001*y"}, "displacements that are the same everywhere");
   refused({"Traction->front->Z=x > 1.1 ? -10 : 0"}, "smooth within each cell");
   refused({"Material->Poisson's Ratio=0.45"}, "projected dilatation");
 }
