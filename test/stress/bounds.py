@@ -296,6 +296,7 @@ def compare(outcome, summary, reference):
     left = reference["error_estimate"]["energy_norm"] ** 2 / 2
     guaranteed = reference["error_bound"]["kind"] == "guaranteed"
     low_there, high_there = reference["error_bound"]["energy_J"] if guaranteed else [reference["energy_J"] - MOST_OFF * left, reference["energy_J"]]
+    left = min(left, high_there - low_there)  # the estimate counts a jump of the pressure between materials, which nodes cannot have
     true = high - (high_there - left)
     if true < ROUNDING * (abs(high) + abs(low)):
         outcome.exact = True

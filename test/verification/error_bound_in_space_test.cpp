@@ -135,6 +135,16 @@ TEST(ErrorBoundInSpace, OfAStepWithoutDentsIsThatOfItsLoads)
   EXPECT_NEAR(step.bound->lower, alone.bound->lower, 1e-6 * std::abs(alone.bound->lower));
 }
 
+TEST(ErrorBoundInSpace, IsRefusedOfAStepAfterDents)
+{
+  const Solution s =
+      run_scene(deck, {"Contact->Yield Stress=0.2", "Steps->Times={1, 2}", "Adapt->Error Bound=guaranteed"});
+  ASSERT_TRUE(s.failure);
+  EXPECT_EQ(s.failure->code, ExitCode::bad_input);
+  EXPECT_EQ(s.failure->time, 2);
+  EXPECT_NE(s.failure->reason.find("without dents"), std::string::npos) << s.failure->reason;
+}
+
 TEST(ErrorBoundInSpace, IsRefusedWithWhatIsCovered)
 {
   const auto refused = [](std::vector<std::string> assignments, const std::string &part) {
@@ -153,9 +163,8 @@ TEST(ErrorBoundInSpace, IsRefusedWithWhatIsCovered)
   refused({"Mesh->Element=Q1"}, "the cells are Q1");
   refused({"Contact->Gap=0.01*x^2"}, "another than between its nodes");
   refused({"Contact->Yield Stress=5", "Contact->Hardening=3"}, "Hardening");
-  refused({"Contact->Stiffness=3"}, "is another");
-  refused({"Contact->Yield Stress=5", "Contact->Friction Bound=3"}, "is another");
-  refused({"Contact->Yield Stress=0.2", "Contact->Hardening=0", "Steps->Times={1, 2}"}, "without dents");
+  refused({"Contact->Stiffness=3"}, "Stiffness");
+  refused({"Contact->Yield Stress=5", "Contact->Friction Bound=3"}, "has friction");
   refused({"Dirichlet->left->X=0.001*y"}, "displacements that are the same everywhere");
   refused({"Traction->front->Z=x > 1.1 ? -10 : 0"}, "smooth within each cell");
   refused({"Material->Poisson's Ratio=0.45"}, "projected dilatation");

@@ -91,11 +91,15 @@ std::string not_covered_in_space(const analysis::Problem &problem, const analysi
         return "in space it covers prescribed displacements that are the same everywhere, and \"Dirichlet->" +
                condition.name + "\" depends on the place";
   for (const auto &c : model.contact) {
+    std::string other;
     const auto number = [&](const int p) { return value_everywhere(c.*contact::law_parameters[p].field); };
-    if (!number(0) || number(1) != 0. || !number(2) || !std::isinf(*number(2)) || c.has_friction())
+    if (c.has_friction()) other = "\"" + c.path + "\" has friction";
+    if (!number(2) || !std::isinf(*number(2))) other = "\"" + c.path + "->Stiffness\" is not inf";
+    if (number(1) != 0.) other = "\"" + c.path + "->Hardening\" is not 0";
+    if (!other.empty())
       return "in space it covers foundations that are rigid until they yield at one yield stress a side, without "
-             "friction, and \"" +
-             c.path + "\" is another";
+             "friction, and " +
+             other;
   }
   const auto dent = to_host(step.contact.dent);
   for (std::size_t i = 0; i < dent.extent(0); ++i)
