@@ -110,6 +110,18 @@ void require_fit_for_periodic(const Scene &scene)
                 "deck: \"" << side.path
                            << "->Dents Move With\" = foundation does not go with \"Mesh->Periodic\": dents are not "
                            << "followed across joined sides. Write body");
+  for (const auto &condition : scene.model.dirichlet) {
+    if (!condition.rigid) continue;
+    for (const int motion : condition.rigid->motions)
+      for (int d = 0; d < 3 && motion >= 3; ++d) {
+        const auto &turned = condition.rigid->displacement[motion];
+        RPC_REQUIRE(!box->periodic[d] || d == motion - 3 || (turned && turned->is_zero()),
+                    "deck: \"" << condition.path() << "->" << fem::name_of_motion(motion)
+                               << "\" must be 0: \"Mesh->Periodic\" repeats the body along "
+                               << "XYZ"[d] << ", and a side that turns does not repeat itself. Write \""
+                               << fem::name_of_motion(motion) << "\" = 0");
+      }
+  }
 }
 
 Scene read_scene(const std::string &deck_path, const std::vector<std::string> &assignments, const Comm &comm)

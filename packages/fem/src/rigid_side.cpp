@@ -182,9 +182,9 @@ std::vector<RigidSide> rigid_sides(const Discretization &d, const std::vector<Di
       for (const int b : side.unknown) of_unknown.push_back(side.products[place(a) * n + place(b)]);
     const double told = side.unknown.empty() ? 1 : set_modes(side, of_unknown);
     RPC_REQUIRE(told > Alike::least_part,
-                "deck: \"" << condition.path() << "->Side\" must tell its rotations apart, and the nodes of side \""
-                           << condition.side
-                           << "\" lie on one line. Give those rotations about it, such as \"Rotation X\" = 0.");
+                "deck: \"" << condition.path() << "->Point\" must be nearer to the side \"" << condition.side
+                           << "\": from so far away, rotations move its nodes as displacements do, to rounding. Name a "
+                              "point near the side, and give forces with their moments about it.");
     sides.push_back(std::move(side));
   }
   return sides;
