@@ -292,6 +292,11 @@ void print_accuracy(std::ostream &out, const Scene &scene, const Solution &s)
     print_text(out, "errors", "not estimated where a force moves the obstacle");
     return;
   }
+  const auto &box = s.discretization.mesh->box;
+  if (box && mesh::periodic(*box)) {
+    print_text(out, "errors", "not estimated in a periodic box");
+    return;
+  }
   if (!s.estimate) {
     print_text(
         out, "errors",

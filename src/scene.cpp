@@ -5,9 +5,11 @@
 #include "rpc/core/error.hpp"
 #include "rpc/core/fingerprint.hpp"
 #include "rpc/core/parameters.hpp"
+#include "rpc/fem/rigid_side.hpp"
 #include "rpc/io/deck.hpp"
 #include "rpc/io/expression.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
@@ -110,18 +112,18 @@ void require_fit_for_periodic(const Scene &scene)
                 "deck: \"" << side.path
                            << "->Dents Move With\" = foundation does not go with \"Mesh->Periodic\": dents are not "
                            << "followed across joined sides. Write body");
-  for (const auto &condition : scene.model.dirichlet) {
-    if (!condition.rigid) continue;
-    for (const int motion : condition.rigid->motions)
-      for (int d = 0; d < 3 && motion >= 3; ++d) {
-        const auto &turned = condition.rigid->displacement[motion];
-        RPC_REQUIRE(!box->periodic[d] || d == motion - 3 || (turned && turned->is_zero()),
-                    "deck: \"" << condition.path() << "->" << fem::name_of_motion(motion)
-                               << "\" must be 0: \"Mesh->Periodic\" repeats the body along "
-                               << "XYZ"[d] << ", and a side that turns does not repeat itself. Write \""
-                               << fem::name_of_motion(motion) << "\" = 0");
-      }
-  }
+  for (const auto &condition : scene.model.dirichlet)
+    for (int axis = 0; axis < 3 && condition.rigid; ++axis) {
+      const int first = (axis + 1) % 3, second = (axis + 2) % 3, rotation = 3 + axis;
+      const auto &motions = condition.rigid->motions;
+      if (std::find(motions.begin(), motions.end(), rotation) == motions.end()) continue;
+      const auto &turn = condition.rigid->displacement[rotation];
+      RPC_REQUIRE((!box->periodic[first] && !box->periodic[second]) || (turn && turn->is_zero()),
+                  "deck: \"" << condition.path() << "->" << fem::name_of_motion(rotation)
+                             << "\" must be 0 with \"Mesh->Periodic\": a side that is joined to itself does not turn, "
+                                "got "
+                             << (turn ? turn->text : "none, which lets it turn") << ". Write 0");
+    }
 }
 
 Scene read_scene(const std::string &deck_path, const std::vector<std::string> &assignments, const Comm &comm)

@@ -116,7 +116,7 @@ void print_body(Block &block, const Scene &scene, const fem::Discretization &d)
   std::string box;
   for (int c = 0; c < d.dim(); ++c)
     box += std::string(c > 0 ? ", " : "") + "xyz"[c] + " from " + plain_number(body.lower[c]) + " to " +
-           plain_number(body.upper[c]);
+           plain_number(body.upper[c]) + (mesh.box && mesh.box->periodic[c] ? " (periodic)" : "");
   block.line("body", std::to_string(cells) + " cells of " + mesh.element.name() +
                          (d.dim() == 2 ? ", " + fem::name_of(d.kinematics) : "") + "; " + box + " " + units.length);
   const std::string name = d.per_length() ? "area" : "volume";
