@@ -4,6 +4,7 @@
 #include "deck_notes.hpp"
 #include "rpc/contact/between_nodes.hpp"
 #include "rpc/contact/clearance.hpp"
+#include "rpc/contact/joined_sides.hpp"
 #include "rpc/fem/measure.hpp"
 
 #include <algorithm>
@@ -209,6 +210,18 @@ void SeldomMeant::after(const analysis::Solution &s)
   if (!unseen.empty() && !has_unseen_contact_)
     notes_.add((scene_.has_steps() ? analysis::at_time(s.time) : "") + unseen);
   has_unseen_contact_ |= !unseen.empty();
+  note_uneven_gap(s);
+}
+
+void SeldomMeant::note_uneven_gap(const analysis::Solution &s)
+{
+  if (has_uneven_gap_) return;
+  const auto options = scene_.model.seen_at(s.step.time, s.step.obstacle).contact;
+  const auto sides = contact::contact_sides(*s.discretization.mesh, options);
+  const contact::UnevenGap uneven = contact::uneven_gap(s.discretization, sides, options, s.step.contact, s.contact);
+  const std::string note = contact::uneven_gap_note(uneven, options, s.discretization.dim(), scene_.model.units);
+  has_uneven_gap_ = !note.empty();
+  if (has_uneven_gap_) notes_.add((scene_.has_steps() ? analysis::at_time(s.time) : "") + note);
 }
 
 void SeldomMeant::at_end(const analysis::Solution &s)

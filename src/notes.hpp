@@ -34,7 +34,7 @@ private:
 };
 
 /// Notes on scenes that are right and seldom meant: nothing loads the body, nothing touches, a foundation reaches through the body, friction
-/// gets the whole load in one step, supports take a load; and on contact that the mesh does not see.
+/// gets the whole load in one step, supports take a load, a foundation has not the period of its box; and on contact that the mesh does not see.
 class SeldomMeant
 {
 public:
@@ -51,12 +51,14 @@ public:
 private:
   void note_overlaps(const analysis::Problem &problem, const analysis::Step &step);
   void note_held_loads(const analysis::Problem &problem, const analysis::Step &step);
+  void note_uneven_gap(const analysis::Solution &s);
 
   const Scene &scene_;
   Notes &notes_;
   bool loaded_;                                                   // at any step
   std::vector<char> overlaps_;                                    // sides whose foundations have been said to
   bool has_unseen_contact_ = false;                               // at any step
+  bool has_uneven_gap_ = false;                                   // at any step
   double smallest_gap_ = std::numeric_limits<double>::infinity(); // of all steps [m]
 };
 

@@ -34,6 +34,13 @@ SLAB = """deck:
     Friction Coefficient: 0.3
   Steps: {{Times: {times}, Checkpoint Every: 1}}
 """
+# Pressed by a force, and by a circle that may stand anywhere.
+RIGID = """deck:
+  Mesh: {Lower: [0.0, 0.0], Upper: [1.0, 1.0], Cells: [16, 8], Periodic: X}
+  Material: {Young's Modulus: 0.91, Poisson's Ratio: 0.3}
+  Rigid: {top: {X: 0.0, Force Y: -0.005}}
+  Contact: {Side: bottom, Obstacle: {Type: circle, Centre: [0.5, -1.0], Radius: 1.0}}
+"""
 ONE_RANK = "nothing here depends on ranks"
 # Of one rank, Q1 after a step of friction [J].
 ENERGY = 1.06807572855e-5
@@ -129,6 +136,14 @@ class Periodic(RpcTestCase):
         self.assertLess(errors[1], 4e-3)
         self.assertLess(errors[1], errors[0] / 2)
 
+    def test_a_foundation_without_the_period_is_told_where_it_matters(self):
+        told = "has not the period of the box"
+        for centre, is_told in ((0.5, False), (0.3, False), (0.0, True), (0.97, True)):
+            with self.subTest(centre=centre):
+                found = self.solve(RIGID, "--set=Rigid->top->Rotation Z=0", f"--set=Contact->Obstacle->Centre={{{centre},-1.0}}")
+                self.assertAlmostEqual(found["contact_force"][1], 0.005, delta=1e-9)
+                self.assertEqual(sum(told in note for note in found["notes"]), is_told)
+
     @unittest.skipUnless(netCDF4, "python3 has no netCDF4")
     def test_no_cell_of_a_file_reaches_across_the_box(self):
         for element, width in (("P1", 1 / 8), ("Q2", 1 / 8)):
@@ -184,6 +199,10 @@ class Periodic(RpcTestCase):
                 (self.folder / "deck.yaml").write_text(BLOCK.format(cells=8, deep=4, length=1.0, height=1.0, element="Q1", periodic="X", held="top: {X: 0.0, Y: -0.012}",
                                                                     loaded="", foundation=WAVE.format(shift=0.0)))
                 self.expect_refusal(self.rpc("--input=deck.yaml", *(f"--set={each}" for each in changes), code=None), 2, parts)
+        # Both ends of a side that turns would not meet.
+        (self.folder / "deck.yaml").write_text(RIGID)
+        self.expect_refusal(self.rpc("--input=deck.yaml", code=None), 2, ["\"Rigid->top->Rotation Z\" must be 0 with \"Mesh->Periodic\"", "got none", "Write 0"])
+        self.expect_refusal(self.rpc("--input=deck.yaml", "--set=Rigid->top->Rotation Z=0.001*t", code=None), 2, ["got 0.001*t"])
         # Nothing turns a periodic body, but something must hold it along the period.
         (self.folder / "deck.yaml").write_text(BLOCK.format(cells=8, deep=4, length=1.0, height=1.0, element="Q1", periodic="X", held="", loaded="top: {X: 0.001, Y: -0.01}",
                                                             foundation=WAVE.format(shift=0.0)))
