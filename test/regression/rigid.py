@@ -185,7 +185,7 @@ class Rigid(RpcTestCase):
         self.refuse(written(PUNCH, "X: 0.0, Force Y: -22.0, Point: [1.0e+6, 1.0]"), BAD_INPUT, ['"Rigid->top->Point" must be nearer to the side "top"'])
         repeated = lambda deck, top: written(deck, top).replace("Element: Q2", "Element: Q2, Periodic: X")
         for deck, turns, given in [(PUNCH, "Rotation Z", "X: 0.0, Force Y: -22.0"), (PUNCH, "Rotation Z", "Rotation Z: 0.01"), (BLOCK, "Rotation Y", "Rotation Z: 0.0")]:
-            self.refuse(repeated(deck, given), BAD_INPUT, [f'"Rigid->top->{turns}" must be 0: "Mesh->Periodic" repeats the body along X'])
+            self.refuse(repeated(deck, given), BAD_INPUT, [f'"Rigid->top->{turns}" must be 0 with "Mesh->Periodic"'])
         self.near(self.solve("repeated", repeated(PUNCH, "X: 0.0, Rotation Z: 0.0, Force Y: -22.0"))["contact_force"][1], 22.0, 22.0)
         held = "Dirichlet: {NAME: {X: 0.0, Y: 0.0}}\n  Rigid:"
         self.refuse(written(PUNCH, "X: 0.0").replace("Rigid:", held.replace("NAME", "left")), BAD_INPUT, ["both hold X of one node", "the rigid side is to move it"])
