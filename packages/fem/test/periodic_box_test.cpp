@@ -127,7 +127,9 @@ TEST(PeriodicBox, TranslationsAndTurnsAboutThePeriodAreItsRigidMotions)
     const double of_any = energy([](const Point &x) { return Point{x[1], 0, 0}; });
     EXPECT_LT(energy([](const Point &) { return Point{0.3, -0.2, 0.1}; }), 1e-20 * of_any);
     EXPECT_GT(energy([](const Point &x) { return Point{-x[1], x[0], 0}; }), 1e-3 * of_any);
-    if (element.dim == 3) EXPECT_LT(energy([](const Point &x) { return Point{0, -x[2], x[1]}; }), 1e-20 * of_any);
+    if (element.dim == 3) {
+      EXPECT_LT(energy([](const Point &x) { return Point{0, -x[2], x[1]}; }), 1e-20 * of_any);
+    }
   }
 }
 
@@ -144,14 +146,20 @@ TEST(PeriodicBox, CoarserOnesArePeriodicWithTwoCellsAtLeast)
       GO nodes = 1, places = 1;
       for (int d = 0; d < element.dim; ++d) {
         const GO intervals = GO(box.element.order_along(d)) * box.cells[d];
-        if (box.periodic[d]) EXPECT_GE(box.cells[d], 2);
+        if (box.periodic[d]) {
+          EXPECT_GE(box.cells[d], 2);
+        }
         nodes *= intervals + (box.periodic[d] ? 0 : 1);
         places *= intervals + 1;
       }
       EXPECT_EQ(num_nodes(mesh), nodes);
-      if (world()->getSize() == 1) EXPECT_EQ(GO(mesh.coords.extent(0)), places);
+      if (world()->getSize() == 1) {
+        EXPECT_EQ(GO(mesh.coords.extent(0)), places);
+      }
     }
-    if (world()->getSize() == 1) EXPECT_LE(box.cells[0], 2);
+    if (world()->getSize() == 1) {
+      EXPECT_LE(box.cells[0], 2);
+    }
   }
 }
 
