@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <variant>
 
 namespace rpc::adapt
@@ -49,6 +50,35 @@ EarlierSteps earlier_steps(const Task &task, const Solution &s)
     if (step.time < s.time && step.contact.max_dent > 0) earlier.matter = true;
   }
   return earlier;
+}
+
+LeftByJumps jumps_so_far(const Solution &s)
+{
+  LeftByJumps most = s.earlier_jumps;
+  if (!s.adaptation || s.adaptation->cycles.empty()) return most;
+  const auto own = left_by_jumps(s.adaptation->cycles[best_of(s.adaptation->cycles)]);
+  return {std::max(most.force, own.force), std::max(most.energy, own.energy)};
+}
+
+analysis::HistoryState state_of(const Solution &s)
+{
+  const LeftByJumps jumps = jumps_so_far(s);
+  return {s.discretization,    s.mesh_options,     *s.memory,   std::nullopt, s.history,
+          s.matrix_assemblies, s.largest_estimate, jumps.force, jumps.energy};
+}
+
+Solution step_of(analysis::HistoryState state)
+{
+  Solution s;
+  s.time = state.last.time;
+  s.discretization = std::move(state.discretization);
+  s.mesh_options = std::move(state.mesh_options);
+  s.memory = std::move(state.last);
+  s.history = std::move(state.records);
+  s.matrix_assemblies = state.matrix_assemblies;
+  s.largest_estimate = state.largest_estimate;
+  s.earlier_jumps = {state.jumped_force, state.jumped_energy};
+  return s;
 }
 
 } // namespace rpc::adapt

@@ -16,4 +16,13 @@ std::optional<mesh::MeshOptions> with_larger_cells(const mesh::MeshOptions &opti
 /// What counts of the load steps up to a solution, for its error bars.                                 doc/theory.md (10.7c)
 EarlierSteps earlier_steps(const Task &task, const Solution &s);
 
+/// The most that data which jump leave open in a step or in those before it.
+LeftByJumps jumps_so_far(const Solution &s);
+
+/// What a step leaves for the next one, which reads nothing else of it.
+analysis::HistoryState state_of(const Solution &s);
+
+/// The step that left it, without its solution.
+Solution step_of(analysis::HistoryState state);
+
 } // namespace rpc::adapt

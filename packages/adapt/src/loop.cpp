@@ -250,37 +250,6 @@ Solution solve_adaptively(const Task &task, const Solution *const earlier, const
   return std::move(*best);
 }
 
-/// The most that a step and those before it leave open.
-LeftByJumps jumps_so_far(const Solution &s)
-{
-  LeftByJumps most = s.earlier_jumps;
-  if (!s.adaptation || s.adaptation->cycles.empty()) return most;
-  const auto own = left_by_jumps(s.adaptation->cycles[best_of(s.adaptation->cycles)]);
-  return {std::max(most.force, own.force), std::max(most.energy, own.energy)};
-}
-
-/// What a step leaves for the next one, which reads nothing else of it.
-analysis::HistoryState state_of(const Solution &s)
-{
-  const LeftByJumps jumps = jumps_so_far(s);
-  return {s.discretization,    s.mesh_options,     *s.memory,   std::nullopt, s.history,
-          s.matrix_assemblies, s.largest_estimate, jumps.force, jumps.energy};
-}
-/// The step that left it, without its solution.
-Solution step_of(analysis::HistoryState state)
-{
-  Solution s;
-  s.time = state.last.time;
-  s.discretization = std::move(state.discretization);
-  s.mesh_options = std::move(state.mesh_options);
-  s.memory = std::move(state.last);
-  s.history = std::move(state.records);
-  s.matrix_assemblies = state.matrix_assemblies;
-  s.largest_estimate = state.largest_estimate;
-  s.earlier_jumps = {state.jumped_force, state.jumped_energy};
-  return s;
-}
-
 /// The load steps up to a solution, or where earlier ones do not matter its own alone, on a mesh with larger cells. Collective.
 /// @param[inout] seconds  of phases: those that it takes are added
 CoarserHistory coarser_history(const Task &task, const Solution &s, const bool earlier_matter,

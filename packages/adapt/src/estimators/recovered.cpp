@@ -212,7 +212,7 @@ double lowest_bound(const Comm &comm, const contact::ContactNodes &c)
   double lowest = 0;
   Kokkos::parallel_reduce(
       "rpc::adapt::lowest_yield_stress", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, double &least) { least = math::fmin(least, points.law(i).yield); },
+      KOKKOS_LAMBDA(const LO i, double &least) { least = math::fmin(least, contact::dented_from(points.law(i))); },
       Kokkos::Min<double>(lowest));
   return min_all(comm, lowest);
 }

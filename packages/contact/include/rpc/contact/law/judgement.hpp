@@ -86,4 +86,10 @@ KOKKOS_INLINE_FUNCTION double largest_bearable(const Foundation &f)
   return is_rigid(f.yield) || f.hardening > 0 ? math::infinity<double> : f.yield;
 }
 
+/// The pressure from which the foundation gives way for good [Pa]; inf where it never does.
+KOKKOS_INLINE_FUNCTION double dented_from(const Foundation &f)
+{
+  return is_rigid(f.yield) ? math::infinity<double> : f.yield;
+}
+
 } // namespace rpc::contact
