@@ -142,6 +142,7 @@ class Rigid(RpcTestCase):
         self.near(rigid["energy_J"], plain["energy_J"], abs(plain["energy_J"]), 1e-12)
         self.near(rigid["rigid"]["top"]["displacement"][1], plain["force_displacement"]["top"][1], 1e-2)
         self.assertNotIn("rotation", rigid["rigid"]["top"])
+        self.near(rigid["rigid"]["top"]["point"], [0, 1], 1)
 
     def test_large_rotations_are_told(self):
         end = self.solve("beam", written(BEAM).replace("3.0}", "12.0}"))

@@ -57,7 +57,7 @@ std::vector<double> solved(const Factored &f, std::vector<double> b)
   return b;
 }
 
-/// The area's centroid. Collective.
+/// The area's centroid, of a body of revolution that of the whole circumference, on the axis. Collective.
 Point centroid(const Discretization &d, const mesh::Side &side, const std::vector<LO> &nodes, const HostPoints &x)
 {
   Vector areas(d.owned_dofs);
@@ -71,6 +71,7 @@ Point centroid(const Discretization &d, const mesh::Side &side, const std::vecto
   }
   sums = summed(d.mesh->comm(), sums);
   if (!(sums[3] > 0)) return {};
+  if (d.axisymmetric()) sums[0] = 0;
   return {sums[0] / sums[3], sums[1] / sums[3], sums[2] / sums[3]};
 }
 
