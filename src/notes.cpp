@@ -241,16 +241,22 @@ void SeldomMeant::at_end(const analysis::Solution &s)
   notes_.add(note.str());
 }
 
-HeldContact held_contact(const contact::ContactNodes &contact)
+HeldContact held_contact(const Scene &scene, const contact::ContactNodes &contact)
 {
   if (contact.num_fixed == 0) return {"", true};
+  const auto &conditions = scene.model.dirichlet;
+  const auto num_rigid =
+      std::count_if(conditions.begin(), conditions.end(), [](const auto &each) { return each.rigid.has_value(); });
+  const std::string held_by = num_rigid == 0                                      ? "\"Dirichlet\""
+                              : num_rigid == static_cast<long>(conditions.size()) ? "\"Rigid\""
+                                                                                  : "\"Dirichlet\" or \"Rigid\"";
   if (contact.num_fixed == contact.num_total)
-    return {"\"Dirichlet\" prescribes the normal displacement of all " + std::to_string(contact.num_total) +
+    return {held_by + " prescribes the normal displacement of all " + std::to_string(contact.num_total) +
                 " contact nodes and wins over contact there: the foundation holds nothing",
             false};
   return {"the normal displacement of " + std::to_string(contact.num_fixed) + " of " +
-              std::to_string(contact.num_total) +
-              " contact nodes is prescribed by \"Dirichlet\", which wins over contact there",
+              std::to_string(contact.num_total) + " contact nodes is prescribed by " + held_by +
+              ", which wins over contact there",
           true};
 }
 

@@ -67,7 +67,7 @@ struct HeldContact {
   std::string note; ///< empty: there are none
   bool harmless;    ///< contact is left at others, as where a support ends at a contact side
 };
-HeldContact held_contact(const contact::ContactNodes &contact);
+HeldContact held_contact(const Scene &scene, const contact::ContactNodes &contact);
 
 /// What the user should know of a body on its mesh, but for held_contact().
 std::vector<std::string> notes_on_mesh(const Scene &scene, const fem::Discretization &d,

@@ -76,7 +76,7 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
       told_of_meshes.insert(without_counts);
       return told.count(without_counts) == 0;
     };
-    if (const HeldContact held = held_contact(contact); is_new(held.note))
+    if (const HeldContact held = held_contact(scene, contact); is_new(held.note))
       held.harmless ? notes.add_harmless(held.note) : notes.add(held.note);
     for (const std::string &note : notes_on_mesh(scene, d, contact))
       if (is_new(note)) notes.add(note);

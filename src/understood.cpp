@@ -196,11 +196,16 @@ void print_loads(Block &block, const Scene &scene, const fem::Discretization &d)
   if (std::any_of(force.begin(), force.end(), [](const ScalarField &each) { return !each.is_zero(); }))
     tell("body force", changes(force),
          [&](const analysis::Model &model) { return fem::resultant(d, model.body_force); });
-  else if (scene.model.tractions.empty())
-    block.line("loads", std::any_of(scene.model.dirichlet.begin(), scene.model.dirichlet.end(),
-                                    [](const auto &each) { return each.rigid.has_value(); })
-                            ? "none but what \"Dirichlet\" and \"Rigid\" give"
-                            : "none but what \"Dirichlet\" prescribes");
+  else if (scene.model.tractions.empty()) {
+    const auto &held = scene.model.dirichlet;
+    const auto &sides = scene.model.contact;
+    std::vector<std::string> others{"what \"Dirichlet\" prescribes"};
+    if (std::any_of(held.begin(), held.end(), [](const auto &each) { return each.rigid.has_value(); }))
+      others = {"what \"Dirichlet\" and \"Rigid\" give"};
+    if (std::any_of(sides.begin(), sides.end(), [](const auto &side) { return side.obstacle.is_moved(); }))
+      others.emplace_back("the force on the obstacle");
+    block.line("loads", "none but " + joined_by(others, " and "));
+  }
 }
 
 std::string law_text(const contact::ContactOptions &side, const UnitNames &units)

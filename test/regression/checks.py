@@ -204,6 +204,8 @@ class Check(RpcTestCase):
         told = self.rpc("--check", "--input=deck.yaml").stdout
         self.assertIn("the foundation holds nothing", told)
         self.assertIn("see the note above", told)
+        (self.folder / "deck.yaml").write_text("deck:" + held.replace("Dirichlet", "Rigid").replace("Y: -0.01", "Y: -0.01, Rotation Z: 0.0"))
+        self.assertIn('note: "Rigid" prescribes the normal displacement of all', self.rpc("--check", "--input=deck.yaml").stdout)
 
     def test_it_sends_to_the_notes_that_it_tells(self):
         (self.folder / "deck.yaml").write_text("deck:" + PRESSED)
@@ -300,6 +302,8 @@ Transfinite Curve "*" = 3; Transfinite Surface "*"; Transfinite Volume "*"; Reco
 """)
         for line in ('loads       "right": in all (1.5, 0) N/m at t = 0.5, (6, 0) N/m at t = 2', '"left": in all (0, -2) N/m'):
             self.assertIn(line, told)
+        told = self.understood(HELD + "  Contact: {Side: bottom, Obstacle: {Type: plane, Point: [0.0, 0.0], Normal: [0.0, 1.0], Force Y: 2.0}}\n")
+        self.assertIn('loads       none but what "Dirichlet" prescribes and the force on the obstacle', told)
 
     def test_it_leaves_a_run_and_its_results_alone(self):
         self.solve("--set=Steps->Times={1,2}", "--set=Steps->Checkpoint Every=1")
