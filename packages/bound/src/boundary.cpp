@@ -16,13 +16,13 @@ namespace
 {
 
 /// Where something is off most, on all ranks.
-struct Place {
+struct WorstPlace {
   double off, x, y;
 };
-Place place_of_worst(const Comm &comm, const double off, const double x, const double y)
+WorstPlace place_of_worst(const Comm &comm, const double off, const double x, const double y)
 {
   const std::vector<double> all = gathered_by_all(comm, std::vector<double>{off, x, y});
-  Place worst{all[0], all[1], all[2]};
+  WorstPlace worst{all[0], all[1], all[2]};
   for (std::size_t k = 3; k + 2 < all.size(); k += 3)
     if (all[k] > worst.off) worst = {all[k], all[k + 1], all[k + 2]};
   return worst;
@@ -59,7 +59,7 @@ void require_represented_load(const OnHost &host, const fem::VectorField &tracti
         }
       }
   }
-  const Place place = place_of_worst(host.mesh.comm(), worst, worst > 0 ? x(at, 0) : 0, worst > 0 ? x(at, 1) : 0);
+  const WorstPlace place = place_of_worst(host.mesh.comm(), worst, worst > 0 ? x(at, 0) : 0, worst > 0 ? x(at, 1) : 0);
   RPC_REQUIRE(place.off <= allowed * max_all(host.mesh.comm(), largest),
               "deck: \"Adapt->Error Bound\" = guaranteed covers loads that are smooth within each cell; \"Traction->"
                   << name << "\" is not, at (" << x(at, 0) << ", " << x(at, 1)
@@ -88,7 +88,7 @@ void require_represented_displacement(const ScalarField &field, const OnHost &ho
         at = e * n + q;
       }
     }
-  const Place place = place_of_worst(host.mesh.comm(), worst, worst > 0 ? x(at, 0) : 0, worst > 0 ? x(at, 1) : 0);
+  const WorstPlace place = place_of_worst(host.mesh.comm(), worst, worst > 0 ? x(at, 0) : 0, worst > 0 ? x(at, 1) : 0);
   RPC_REQUIRE(place.off <= 1e-10 * max_all(host.mesh.comm(), largest),
               "deck: \"Adapt->Error Bound\" = guaranteed covers displacements that the elements represent; "
               "\"Dirichlet->"
