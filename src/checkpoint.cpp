@@ -303,8 +303,8 @@ analysis::HistoryState Checkpoints::state_of(Whole whole) const
     state.matrix_assemblies = text.at("assemblies");
     if (const auto largest = text.find("largest_estimate"); largest != text.end() && !largest->is_null()) // NaN is null
       state.largest_estimate = *largest;
-    state.jumped_force = text.at("jumped_force");
-    state.jumped_energy = text.at("jumped_energy");
+    state.misread_force = text.at("misread_force");
+    state.misread_energy = text.at("misread_energy");
   } catch (const json::parse_error &) { // on all ranks: they read the same text
     throw Error(ExitCode::bad_input, "restart: \"" + path +
                                          "\" is damaged: its text is not what was written. Take an older one, "
@@ -330,8 +330,8 @@ void Checkpoints::write(const analysis::HistoryState &state)
                {"obstacle", state.last.obstacle},
                {"assemblies", state.matrix_assemblies},
                {"largest_estimate", state.largest_estimate},
-               {"jumped_force", state.jumped_force},
-               {"jumped_energy", state.jumped_energy}};
+               {"misread_force", state.misread_force},
+               {"misread_energy", state.misread_energy}};
   for (const auto &[name, content] : scene_.identity) text["deck"][name] = content;
   text["records"] = json::array();
   for (const StepRecord &record : state.records) text["records"].push_back(to_json(record, scope));

@@ -140,8 +140,8 @@ void add_what_earlier_steps_leave(const CoarserHistory &coarser, const Cycle &la
     return error_of_history(std::abs(distance), coarser.largest_estimate, eta);
   };
   const double of_force = earlier.moved_by > 0 ? caution * squared / earlier.moved_by : 0;
-  const double least = std::max(of_force, earlier.jumps.force);
-  errors.energy += std::max({shown(last.energy - other.energy), caution * squared / 2, earlier.jumps.energy});
+  const double least = std::max(of_force, earlier.misread.force);
+  errors.energy += std::max({shown(last.energy - other.energy), caution * squared / 2, earlier.misread.energy});
   errors.contact_force += std::max(shown(difference_of(last.contact.force, other.contact.force)), least);
   for (std::size_t k = 0; k < errors.reactions.size(); ++k)
     errors.reactions[k] += std::max(shown(difference_of(last.reactions[k], other.reactions[k])), least);
@@ -164,15 +164,30 @@ bool is_fixed(const std::vector<Cycle> &cycles, const FixedByLoad &fixed)
 
 } // namespace
 
-LeftByJumps left_by_jumps(const Cycle &cycle)
+namespace
+{
+
+/// The force that does a work, by how much a mesh's forces move in the mean.
+double force_of(const double energy, const double moved)
+{
+  return moved > 0 ? 2 * energy / moved : 0;
+}
+
+} // namespace
+
+LeftOpen left_by_misreading(const Cycle &cycle)
 {
   const double moved = moved_by(cycle, force_at_work(cycle.contact.force, cycle.reactions));
-  const auto by_energy = [moved](const double energy) { return moved > 0 ? 2 * energy / moved : 0; };
-  const double misread =
-      moved > 0 ? std::min(cycle.misread_force, by_energy(cycle.misread_energy)) : cycle.misread_force;
-  return {cycle.jumped_force + by_energy(cycle.jumped_energy) + misread,
-          cycle.jumped_energy + cycle.jumped_force * moved_by(cycle, length(cycle.contact.force)) +
-              cycle.misread_energy};
+  return {moved > 0 ? std::min(cycle.misread_force, force_of(cycle.misread_energy, moved)) : cycle.misread_force,
+          cycle.misread_energy};
+}
+
+LeftOpen left_by_jumps(const Cycle &cycle)
+{
+  const double moved = moved_by(cycle, force_at_work(cycle.contact.force, cycle.reactions));
+  const LeftOpen misread = left_by_misreading(cycle);
+  return {cycle.jumped_force + force_of(cycle.jumped_energy, moved) + misread.force,
+          cycle.jumped_energy + cycle.jumped_force * moved_by(cycle, length(cycle.contact.force)) + misread.energy};
 }
 
 double energy_left(const Cycle &cycle)

@@ -42,7 +42,7 @@ EarlierSteps earlier_steps(const Task &task, const Solution &s)
   EarlierSteps earlier;
   earlier.matter = contact::has_friction(task.model.contact);
   earlier.largest_estimate = s.largest_estimate;
-  earlier.jumps = s.earlier_jumps;
+  earlier.misread = s.earlier_misread;
   for (const analysis::StepRecord &step : s.history) {
     if (!step.converged || step.time > s.time) continue;
     const double force = force_at_work(step.contact.force, step.reactions);
@@ -52,19 +52,19 @@ EarlierSteps earlier_steps(const Task &task, const Solution &s)
   return earlier;
 }
 
-LeftByJumps jumps_so_far(const Solution &s)
+LeftOpen misread_so_far(const Solution &s)
 {
-  LeftByJumps most = s.earlier_jumps;
+  LeftOpen most = s.earlier_misread;
   if (!s.adaptation || s.adaptation->cycles.empty()) return most;
-  const auto own = left_by_jumps(s.adaptation->cycles[best_of(s.adaptation->cycles)]);
+  const auto own = left_by_misreading(s.adaptation->cycles[best_of(s.adaptation->cycles)]);
   return {std::max(most.force, own.force), std::max(most.energy, own.energy)};
 }
 
 analysis::HistoryState state_of(const Solution &s)
 {
-  const LeftByJumps jumps = jumps_so_far(s);
-  return {s.discretization,    s.mesh_options,     *s.memory,   std::nullopt, s.history,
-          s.matrix_assemblies, s.largest_estimate, jumps.force, jumps.energy};
+  const LeftOpen misread = misread_so_far(s);
+  return {s.discretization,    s.mesh_options,     *s.memory,     std::nullopt,  s.history,
+          s.matrix_assemblies, s.largest_estimate, misread.force, misread.energy};
 }
 
 Solution step_of(analysis::HistoryState state)
@@ -77,7 +77,7 @@ Solution step_of(analysis::HistoryState state)
   s.history = std::move(state.records);
   s.matrix_assemblies = state.matrix_assemblies;
   s.largest_estimate = state.largest_estimate;
-  s.earlier_jumps = {state.jumped_force, state.jumped_energy};
+  s.earlier_misread = {state.misread_force, state.misread_energy};
   return s;
 }
 

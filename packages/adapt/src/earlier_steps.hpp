@@ -16,8 +16,8 @@ std::optional<mesh::MeshOptions> with_larger_cells(const mesh::MeshOptions &opti
 /// What counts of the load steps up to a solution, for its error bars.                                 doc/theory.md (10.7c)
 EarlierSteps earlier_steps(const Task &task, const Solution &s);
 
-/// The most that data which jump leave open in a step or in those before it.
-LeftByJumps jumps_so_far(const Solution &s);
+/// left_by_misreading() of a step and of those before it: the most.
+LeftOpen misread_so_far(const Solution &s);
 
 /// What a step leaves for the next one, which reads nothing else of it.
 analysis::HistoryState state_of(const Solution &s);

@@ -345,7 +345,7 @@ Solution solve_steps_adaptively(const Task &task, const RCP<const Comm> &comm, c
       }
       s.energy_rounding = std::max(earlier ? earlier->energy_rounding : 0, analysis::energy_rounding(task, s));
       s.largest_estimate = std::max(earlier ? earlier->largest_estimate : 0, s.largest_estimate);
-      if (earlier) s.earlier_jumps = jumps_so_far(*earlier);
+      if (earlier) s.earlier_misread = misread_so_far(*earlier);
       earlier = std::move(s);
       solved = true;
       if (listener.load_step && earlier->has_results()) listener.load_step(*earlier);

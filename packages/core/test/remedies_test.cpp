@@ -263,7 +263,7 @@ TEST(UnknownName, OfASideThatAForceMovesIsADisplacementOrItsForce)
 TEST(UnknownName, OfARigidSideIsAMotionOrWhatMovesIt)
 {
   ParameterList valid("deck"), entry, list;
-  for (const char *const name : {"X", "Rotation X", "Force X", "Moment X", "Stiffness X", "Rotation Stiffness X"})
+  for (const char *const name : {"X", "Z", "Rotation X", "Force X", "Moment X", "Stiffness X", "Rotation Stiffness X"})
     rpc::set_field(entry, name, "", "Displacement [m].");
   rpc::set_named_entries(valid, "Rigid", entry, "Rigid sides.");
   for (const auto &[assignment, part] :

@@ -66,11 +66,16 @@ static_assert(sizeof(ObservedErrors) == error_bars.size() * sizeof(double) + siz
 /// @param key  of error_bars
 std::string error_bar_name(const std::string &key, const ResultScope &scope);
 
-/// What data that jump within facets leave open: in which place of it they do.                        doc/theory.md (3.16a), (10.7b)
-struct LeftByJumps {
+/// What a mesh leaves open.
+struct LeftOpen {
   double force = 0, energy = 0; ///< [N], [J], in 2D per m
 };
-LeftByJumps left_by_jumps(const Cycle &cycle);
+
+/// By reading a gap at nodes that jumps or has a kink between them.                                  doc/theory.md (3.16a)
+LeftOpen left_by_misreading(const Cycle &cycle);
+
+/// By that and by other data of the contact law that jump between nodes.                             doc/theory.md (10.7b)
+LeftOpen left_by_jumps(const Cycle &cycle);
 
 /// What one mesh by itself leaves open of J: no bar is smaller [J], in 2D per m.                     doc/theory.md (10.7a), (10.7b)
 double energy_left(const Cycle &cycle);
@@ -100,7 +105,7 @@ struct EarlierSteps {
   bool matter = false;         ///< they have left dents or slip
   double largest_estimate = 0; ///< of all steps, of the error in the energy norm [J^(1/2)]
   double moved_by = 0;         ///< by how much the load moved in the mean, where it moved most [m]
-  LeftByJumps jumps{};         ///< the most of one of them, the last one left out
+  LeftOpen misread{};          ///< left_by_misreading(): the most of one of them, the last one left out
 };
 
 /// The same for the last of several load steps.

@@ -21,7 +21,7 @@ struct Solution : analysis::Solution {
   std::optional<bound::EnergyBound> bound; ///< guaranteed, where it is asked for
   double largest_estimate =
       0; ///< of load steps so far, of the error in the energy norm [J^(1/2)], in 2D per m; NaN: not known
-  LeftByJumps earlier_jumps;            ///< the most of a load step before this one
+  LeftOpen earlier_misread;             ///< left_by_misreading(): the most of a load step before this one
   std::optional<Adaptation> adaptation; ///< where the mesh is adapted
 };
 
