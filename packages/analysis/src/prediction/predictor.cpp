@@ -187,7 +187,9 @@ Prediction Predictor::from_last(const Problem &fine, const Step &step, const Mem
     return result;
   };
   predicted.pressure = changed(*now.pressure, *before.pressure, *last.pressure);
-  if (!last.tangential.is_null()) predicted.tangential = changed(*now.tangential, *before.tangential, *last.tangential);
+  const bool has_friction = // a coarser mesh may have none at its points
+      !last.tangential.is_null() && !before.tangential.is_null() && !now.tangential.is_null();
+  if (has_friction) predicted.tangential = changed(*now.tangential, *before.tangential, *last.tangential);
   Point obstacle = last.obstacle;
   for (int c = 0; c < 3; ++c) obstacle[c] += now.obstacle[c] - before.obstacle[c];
   return {state_of(step.contact, predicted),
