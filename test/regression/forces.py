@@ -102,6 +102,7 @@ class Forces(RpcTestCase):
         near = self.solve("near", written(BOX, "Force Y: -75.0", YIELDS))
         self.assertAlmostEqual(near["contact_force"][1], 75, delta=1e-9)
 
+    @unittest.skipIf(RANKS > 1, "once is enough")
     def test_what_is_not_supported_is_refused(self):
         point = "Dirichlet:\n    corner: {Side: left top, Force Y: -1.0}"
         self.refuse(written(BOX, "Y: 0.0").replace("Dirichlet:", point), BAD_INPUT, ["corner->Force Y", "must move a side"])

@@ -140,6 +140,7 @@ class ObstacleForces(RpcTestCase):
         self.refuse(written(BOX, by_force(ROLLER, "3.0"), law=YIELDS), NO_SOLUTION, ["meets no node", "Turn the force round"])
         self.refuse(written(BOX, by_force(ROLLER, "0.0"), law=YIELDS), NO_SOLUTION, ["nothing presses the body"])
 
+    @unittest.skipIf(RANKS > 1, "once is enough")
     def test_what_is_not_supported_is_refused(self):
         self.refuse(written(BOX, by_force(ROLLER, '"-x"')), BAD_INPUT, ["must not depend on x, y or z"])
         self.refuse(written(BOX, by_force(ROLLER, "-1.0") + ", Force Z: 1.0"), BAD_INPUT, ["Force Z", "does not have"])

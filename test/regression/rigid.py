@@ -74,6 +74,7 @@ class Rigid(RpcTestCase):
                 self.near(end["moment"], moment, moment, 1e-8)
                 self.near(end["force"], [0, 0], moment, 1e-8)
 
+    @unittest.skipIf(RANKS > 1, "once is enough")
     def test_prescribed_motions_are_those_of_dirichlet(self):
         arm = "x - 0.5", "z - 0.25"
         for element in ("P1", "P2", "Q1", "Q2"):
@@ -135,6 +136,7 @@ class Rigid(RpcTestCase):
         self.near(moment["rigid"]["top"]["moment"], -2.2, 2.2)
         self.near(beside["energy_J"], moment["energy_J"], abs(moment["energy_J"]))
 
+    @unittest.skipIf(RANKS > 1, "once is enough")
     def test_of_revolution_it_is_a_force_of_dirichlet(self):
         deck = written(PUNCH, "Force Y: -22.0", ROLLER.replace("0.9", "0.0")).replace("punch:", "punch:\n  Kinematics: axisymmetric")
         rigid = self.solve("rigid", deck)
@@ -144,6 +146,7 @@ class Rigid(RpcTestCase):
         self.assertNotIn("rotation", rigid["rigid"]["top"])
         self.near(rigid["rigid"]["top"]["point"], [0, 1], 1)
 
+    @unittest.skipIf(RANKS > 1, "once is enough")
     def test_large_rotations_are_told(self):
         end = self.solve("beam", written(BEAM).replace("3.0}", "12.0}"))
         self.assertTrue(any('"right" turns by 0.288 rad' in note for note in end["notes"]), end["notes"])
@@ -173,6 +176,7 @@ class Rigid(RpcTestCase):
         self.refuse(written(PUNCH, "X: 0.0, Force Y: 1.0", law), NO_SOLUTION, ["pulls the body away"])
         self.solve("held", written(PUNCH, "X: 0.0, Force Y: 1.0, Stiffness Y: 10.0, Rotation Z: 0.0", law))  # a spring holds it
 
+    @unittest.skipIf(RANKS > 1, "once is enough")
     def test_what_is_not_supported_is_refused(self):
         self.refuse(written(PUNCH, "X: 0.0, Force X: 1.0"), BAD_INPUT, ['"Rigid->top" must have X or Force X, got both'])
         self.refuse(written(PUNCH, "Y: 0.0, Stiffness Y: 1.0"), BAD_INPUT, ['"Rigid->top" must have Y or Stiffness Y, got both'])
