@@ -68,6 +68,11 @@ DENT = """dent:
   Contact: {Side: bottom, Gap: "0.008*(x - 0.3)^2", Yield Stress: 2.0, Hardening: 200.0}
   Steps: {Times: [1.0, 2.0, 3.0]}
   """ + STEEL + "\n"
+TIP = """tip:
+  Mesh: {Lower: [0.0, 0.0], Upper: [1.0, 1.0], Cells: [6, 4], Element: P2}
+  Dirichlet: {top: {X: 0.0, Y: -0.01}}
+  Contact: {Side: bottom, Gap: "0.05*abs(x - 0.47)"}
+  """ + STEEL + "\n"
 # Sizes for the targets below hardly change its first mesh.
 STEP = """step:
   Mesh: {Lower: [0.0, 0.0], Upper: [8.7, 1.0], Cells: [24, 4], Element: Q2}
@@ -156,6 +161,12 @@ class Promises(RpcTestCase):
             self.assertLess(bars[key], 20 * error)
         floor = 2 * coarse["error_estimate"]["relative"]**2 * coarse["contact_force"][1]  # of the last step by itself
         self.assertGreater(abs(coarse["contact_force"][1] - fine["contact_force"][1]), 5 * floor)
+
+    def test_a_foundation_that_never_yields_is_not_said_to(self):
+        [(_, summary)] = self.runs([(TIP, adapt(0.03, 20000))])
+        unknown = summary["adaptation"]["errors_unknown"]
+        self.assertIn("max_pressure", unknown)
+        self.assertNotIn("max_penetration", unknown)
 
     @unittest.skipIf(RANKS > 1, "the mesh of one cell is for one rank")
     def test_error_bars_are_none_where_no_mesh_shows_what_earlier_steps_have_left(self):

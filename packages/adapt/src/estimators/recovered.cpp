@@ -214,7 +214,8 @@ double lowest_bound(const Comm &comm, const contact::ContactNodes &c)
       "rpc::adapt::lowest_yield_stress", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &least) { least = math::fmin(least, contact::dented_from(points.law(i))); },
       Kokkos::Min<double>(lowest));
-  return min_all(comm, lowest);
+  lowest = min_all(comm, lowest); // Kokkos' minimum of infinities, or over no points, is DBL_MAX
+  return lowest < std::numeric_limits<double>::max() ? lowest : std::numeric_limits<double>::infinity();
 }
 
 } // namespace
