@@ -18,12 +18,12 @@ inline double inner_of(const std::vector<double> &x, const std::vector<double> &
 }
 
 /// The least of a quadratic function x . H x/2 - f . x between bounds: conjugate gradients on the face, with steps that leave it (Dostal, SIAM
-/// J. Optim. 7, 1997).
+/// J. Optim. 7, 1997). It ends at rounding: a bound changes in proportion to what is left, which would show between one rank and two.
 /// @param fit  has apply(x, y), y <- H x; right_side(), f; start(); low() and high(); scale(), which makes about 1 of the diagonal
-/// @param enough  square of what may be left of the gradient, over that of f, both scaled
 template <class Fit>
-std::vector<double> least_in_box(const Fit &fit, const double enough)
+std::vector<double> least_in_box(const Fit &fit)
 {
+  constexpr double enough = 1e-26; // square of what may be left of the gradient, over that of f, both scaled
   const std::vector<double> &scale = fit.scale();
   const std::size_t n = scale.size();
   std::vector<double> x(n), g(n), y(n), Hy(n), free(n), chopped(n), scaled(n), lower(n), upper(n);

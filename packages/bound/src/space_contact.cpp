@@ -200,8 +200,7 @@ std::array<double, 2> over(const std::vector<Corner> &corners, const OfTriangle 
 
 std::vector<OfTriangle> fitted_pressure(const SpaceContact &c, const std::vector<OfTriangle> &v)
 {
-  constexpr double enough = 1e-18; // the forces of the whole side weigh much in it
-  const std::vector<double> x = least_in_box(FitInSpace(c, v), enough);
+  const std::vector<double> x = least_in_box(FitInSpace(c, v));
   std::vector<OfTriangle> p(c.facet.size());
   for (std::size_t e = 0; e < p.size(); ++e)
     for (int i = 0; i < 3; ++i) p[e][i] = x[e * 3 + i];
