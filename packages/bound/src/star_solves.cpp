@@ -162,6 +162,21 @@ struct FactorStars {
   }
 };
 
+/// Where the factor of each star begins. @return how many entries they have in all
+std::size_t place_factors(const StarModes &modes, const DeviceView<std::size_t *> &first)
+{
+  std::size_t total = 0;
+  Kokkos::parallel_scan(
+      "rpc::bound::sizes_of_stars", device_range(static_cast<LO>(first.extent(0)) - 1),
+      KOKKOS_LAMBDA(const LO node, std::size_t &before, const bool last) {
+        if (last) first(node) = before;
+        const std::size_t n = modes.size(node);
+        before += n * n;
+      },
+      total);
+  return total;
+}
+
 } // namespace
 
 StarSolves::StarSolves(const CellInput &in, const BoundaryTractions &boundary, const CellForms &forms,
@@ -170,17 +185,8 @@ StarSolves::StarSolves(const CellInput &in, const BoundaryTractions &boundary, c
 {
   const LO nodes = static_cast<LO>(in.facets.num_spokes.extent(0));
   first_ = DeviceView<std::size_t *>("rpc::bound::first", nodes + 1);
-  const auto first = first_;
   const StarModes modes{in, boundary};
-  std::size_t total = 0;
-  Kokkos::parallel_scan(
-      "rpc::bound::sizes_of_stars", device_range(nodes),
-      KOKKOS_LAMBDA(const LO node, std::size_t &before, const bool last) {
-        if (last) first(node) = before;
-        const std::size_t n = modes.size(node);
-        before += n * n;
-      },
-      total);
+  const std::size_t total = place_factors(modes, first_);
   factor_ = DeviceView<double *>(Kokkos::view_alloc("rpc::bound::factor", Kokkos::WithoutInitializing), total);
   answer_ =
       DeviceView<double *>("rpc::bound::answer", 3 * static_cast<std::size_t>(nodes) + 3 * in.facets.spoke.extent(0));
