@@ -115,6 +115,7 @@ std::vector<std::pair<LO, double>> gaps_of_cells(const CellInput &in, const std:
 
 void require_covered(const analysis::Task &task)
 {
+  require_of_deck(!on_gpu, "its kernels did not end on a GPU when they were tried; a program without CUDA has it");
   require_of_deck(task.model.kinematics != fem::Kinematics::axisymmetric, "the body is axisymmetric");
   for (const auto &condition : task.model.dirichlet)
     require_of_deck(!condition.is_moved(), "a force moves the side of \"Dirichlet->" + condition.name + "\"");
