@@ -40,6 +40,7 @@ import adaptive  # of test/stress, whose folder families.py has put on the path
 import friction_histories
 import histories
 import runs
+import trials
 from scenes import contact_rows, rounding, write
 from suite.table import Table
 
@@ -123,7 +124,7 @@ def made(kind, seed, number, size, folder):
     if kind == "adaptive":
         space = list(adaptive.TARGETS)[number % len(adaptive.TARGETS)]
         lists, geo = adaptive.deck(random.Random(f"{seed}/{space}/{number}"), space, number)
-        (folder / "scene.yaml").write_text(adaptive.yaml({"scene": lists}))
+        (folder / "scene.yaml").write_text(trials.written({"scene": lists}, 0))
         if geo:
             (folder / "body.geo").write_text(geo)
         return space, None

@@ -9,19 +9,15 @@ coarse. Every tenth scene may not have the dofs that its target takes, and must 
 against the same scene with a target a third as large. Told are the failures, how often the bars of the contact force and of the energy hold the
 true error, and how true the estimates are. The exit code is 1 if a scene failed or a bar of the force held in less than 95 of 100.
 """
-import concurrent.futures
 import dataclasses
 import json
 import math
-import pathlib
 import random
-import shutil
 import statistics
 import subprocess
 import sys
-import tempfile
 
-import scenes
+import trials
 from generate import log_uniform
 
 NOT_TO_THE_TARGET = 4
@@ -204,11 +200,6 @@ def deck(rng, kind, number):
     return lists, geo
 
 
-def yaml(lists, indent=""):
-    return "".join(f"{indent}{json.dumps(key)}:\n{yaml(value, indent + '  ')}" if isinstance(value, dict) else f"{indent}{json.dumps(key)}: {json.dumps(value)}\n"
-                   for key, value in lists.items())
-
-
 @dataclasses.dataclass
 class Outcome:
     number: int
@@ -241,35 +232,31 @@ def judge(options, number):
     rng = random.Random(f"{options.seed}/{options.kind}/{number}")
     lists, geo = deck(rng, options.kind, number)
     outcome = Outcome(number)
-    folder = pathlib.Path(tempfile.mkdtemp(prefix=f"rpc_adaptive_{number}_"))
-    try:
-        (folder / "scene.yaml").write_text(yaml({"scene": lists}))
-        if geo:
-            (folder / "body.geo").write_text(geo)
-        result, summary = run(options, folder, "out")
-        if summary:
-            outcome.dofs, outcome.seconds = summary["adaptation"]["cycles"][-1]["dofs"], summary["seconds"]["total"]
-        if lists["Adapt"]["Max Dofs"] < MOST_DOFS[options.kind]:
-            judge_few(outcome, result, summary, lists["Adapt"]["Max Dofs"])
-            return outcome
-        if result.returncode or not summary["adaptation"]["reached"]:
-            reason = summary["adaptation"]["reason"] if summary else result.stderr.strip()[-300:]
-            outcome.complaints.append(f"exit {result.returncode}: {reason}")
-            return outcome
-        if summary["adaptation"]["reason"] or max(map(abs, summary["contact_force"])) == 0:
-            return outcome  # at rounding, or it misses the foundation
-        fine, reference = run(options, folder, "fine", f"--set=Adapt->Target Relative Error={lists['Adapt']['Target Relative Error'] / FINER}",
-                              "--set=Adapt->Max Dofs=2000000")
-        if reference is None:
-            outcome.complaints.append(f"reference: exit {fine.returncode}: {fine.stderr.strip()[-200:]}")
-            return outcome
-        compare(outcome, summary, reference)
-    except subprocess.TimeoutExpired:
-        outcome.complaints.append("took too long")
-    finally:
-        if outcome.complaints and options.keep:
-            shutil.copytree(folder, pathlib.Path(options.keep) / f"{options.kind}_{number:04d}", dirs_exist_ok=True)
-        shutil.rmtree(folder, ignore_errors=True)
+    with trials.folder(options, f"{options.kind}_{number:04d}", lambda: outcome.complaints) as folder:
+        try:
+            (folder / "scene.yaml").write_text(trials.written({"scene": lists}, 0))
+            if geo:
+                (folder / "body.geo").write_text(geo)
+            result, summary = run(options, folder, "out")
+            if summary:
+                outcome.dofs, outcome.seconds = summary["adaptation"]["cycles"][-1]["dofs"], summary["seconds"]["total"]
+            if lists["Adapt"]["Max Dofs"] < MOST_DOFS[options.kind]:
+                judge_few(outcome, result, summary, lists["Adapt"]["Max Dofs"])
+                return outcome
+            if result.returncode or not summary["adaptation"]["reached"]:
+                reason = summary["adaptation"]["reason"] if summary else result.stderr.strip()[-300:]
+                outcome.complaints.append(f"exit {result.returncode}: {reason}")
+                return outcome
+            if summary["adaptation"]["reason"] or max(map(abs, summary["contact_force"])) == 0:
+                return outcome  # at rounding, or it misses the foundation
+            fine, reference = run(options, folder, "fine", f"--set=Adapt->Target Relative Error={lists['Adapt']['Target Relative Error'] / FINER}",
+                                  "--set=Adapt->Max Dofs=2000000")
+            if reference is None:
+                outcome.complaints.append(f"reference: exit {fine.returncode}: {fine.stderr.strip()[-200:]}")
+                return outcome
+            compare(outcome, summary, reference)
+        except subprocess.TimeoutExpired:
+            outcome.complaints.append("took too long")
     return outcome
 
 
@@ -291,18 +278,16 @@ def compare(outcome, summary, reference):
 
 
 def main():
-    options = scenes.arguments(__doc__, 100, ("--kind", {"choices": list(TARGETS), "default": "space"}),
+    options = trials.arguments(__doc__, 100, ("--kind", {"choices": list(TARGETS), "default": "space"}),
                                ("--meshes", {"choices": ["automatic", "gmsh", "nested"], "default": "automatic"}))
-    numbers = [options.only] if options.only is not None else range(options.scenes)
     outcomes = []
-    with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
-        for o in pool.map(lambda number: judge(options, number), numbers):
-            outcomes.append(o)
-            if o.complaints:
-                print(f"FAILED {o.number}: {'; '.join(o.complaints)}", flush=True)
-            for key, held in o.held.items():
-                if not held:
-                    print(f"  {o.number}: the bar of {key} does not hold the true error", flush=True)
+    for o in trials.each(options, judge):
+        outcomes.append(o)
+        if o.complaints:
+            print(f"FAILED {o.number}: {'; '.join(o.complaints)}", flush=True)
+        for key, held in o.held.items():
+            if not held:
+                print(f"  {o.number}: the bar of {key} does not hold the true error", flush=True)
     failed = sum(bool(o.complaints) for o in outcomes)
     print(f"{len(outcomes)} scenes ({options.kind}, {options.meshes} meshes, seed {options.seed}), {failed} failed; dofs at most {max(o.dofs for o in outcomes)}, "
           f"longest {max(o.seconds for o in outcomes):.1f} s")

@@ -18,7 +18,7 @@ import sys
 import tempfile
 
 import histories
-import scenes
+import trials
 
 TOLERANCE = 1e-3
 START, PRESSED = 1e-9, 1e-6  # a time just after rest, and the pressure then, over the largest, that tells of an overlap
@@ -95,7 +95,7 @@ def judge(options, number):
 
 
 def main():
-    options = scenes.arguments(__doc__, 100)
+    options = trials.arguments(__doc__, 100)
     numbers = iter([options.only] if options.only is not None else itertools.count())
     counted, failed = [], 0
     with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:

@@ -11,19 +11,14 @@ reference is known no better than its own bar allows is not judged, and counted.
 load again or slide, on foundations of which most remember; the reference is the whole history on the finer meshes, and the last step is judged. For each quantity and each kind are told how many bars hold, how
 many are null, and the median of bar over true error. The exit code is 1 if a run failed or the force's bars held in less than 95 of 100.
 """
-import concurrent.futures
 import dataclasses
-import json
 import math
-import pathlib
 import random
-import shutil
 import statistics
 import sys
-import tempfile
 
 import adaptive
-import scenes
+import trials
 from generate import log_uniform
 
 KINDS = ["smooth", "tip", "gap step", "mu step", "xi step", "corner", "two"]
@@ -188,29 +183,25 @@ def judge(options, number):
     if options.histories:
         in_steps(random.Random(f"{options.seed}/steps/{number}"), lists)
     outcome = Outcome(number, kind)
-    folder = pathlib.Path(tempfile.mkdtemp(prefix=f"rpc_bars_{number}_"))
-    try:
-        results = []
-        reference = finer(lists, FINER, FINER_CELLS, MOST_DOFS_IN_STEPS if "Steps" in lists else MOST_DOFS)
-        for output, factor, more in (("out", 1, []), ("fine", FINER_CELLS, reference)):
-            (folder / "scene.yaml").write_text(adaptive.yaml({"scene": lists}))
-            if geo:
-                (folder / "body.geo").write_text(f"S = {size / factor!r};\n" + geo)
-            result, summary = adaptive.run(options, folder, output, "--set=Output->Exodus=false", *more)
-            if summary is None or summary.get("adaptation") is None or not summary["converged"]:
-                if result.returncode != REFUSED:
-                    outcome.complaint = f"{output}: exit {result.returncode}: {result.stderr.strip()[-200:]}"
-                return outcome
-            results.append(summary)
-        outcome.meshes = len(results[0]["adaptation"]["cycles"])
-        if results[0]["time"] == results[1]["time"] and max(map(abs, results[1]["contact_force"])) > 0:  # or a target was not met before
-            compare(outcome, *results)
-    except Exception as error:  # a run that took too long, a file that is no JSON
-        outcome.complaint = f"{type(error).__name__}: {error}"[:300]
-    finally:
-        if options.keep:
-            shutil.copytree(folder, pathlib.Path(options.keep) / f"bars_{options.seed}_{number:04d}", dirs_exist_ok=True)
-        shutil.rmtree(folder, ignore_errors=True)
+    with trials.folder(options, f"bars_{options.seed}_{number:04d}") as folder:
+        try:
+            results = []
+            reference = finer(lists, FINER, FINER_CELLS, MOST_DOFS_IN_STEPS if "Steps" in lists else MOST_DOFS)
+            for output, factor, more in (("out", 1, []), ("fine", FINER_CELLS, reference)):
+                (folder / "scene.yaml").write_text(trials.written({"scene": lists}, 0))
+                if geo:
+                    (folder / "body.geo").write_text(f"S = {size / factor!r};\n" + geo)
+                result, summary = adaptive.run(options, folder, output, "--set=Output->Exodus=false", *more)
+                if summary is None or summary.get("adaptation") is None or not summary["converged"]:
+                    if result.returncode != REFUSED:
+                        outcome.complaint = f"{output}: exit {result.returncode}: {result.stderr.strip()[-200:]}"
+                    return outcome
+                results.append(summary)
+            outcome.meshes = len(results[0]["adaptation"]["cycles"])
+            if results[0]["time"] == results[1]["time"] and max(map(abs, results[1]["contact_force"])) > 0:  # or a target was not met before
+                compare(outcome, *results)
+        except Exception as error:  # a run that took too long, a file that is no JSON
+            outcome.complaint = f"{type(error).__name__}: {error}"[:300]
     return outcome
 
 
@@ -223,16 +214,14 @@ def shares(outcomes, key):
 
 
 def main():
-    options = scenes.arguments(__doc__, 100, ("--kind", {"choices": KINDS}), ("--histories", {"type": int, "default": 0}), ("--meshes", {"choices": ["automatic", "gmsh", "nested"], "default": "automatic"}))
-    numbers = [options.only] if options.only is not None else range(options.scenes)
+    options = trials.arguments(__doc__, 100, ("--kind", {"choices": KINDS}), ("--histories", {"type": int, "default": 0}), ("--meshes", {"choices": ["automatic", "gmsh", "nested"], "default": "automatic"}))
     outcomes = []
-    with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
-        for o in pool.map(lambda number: judge(options, number), numbers):
-            outcomes.append(o)
-            if o.complaint:
-                print(f"FAILED {o.number} ({o.kind}): {o.complaint}", flush=True)
-            if o.note:
-                print(f"  {o.number} ({o.kind}, {o.meshes} meshes){o.note}", flush=True)
+    for o in trials.each(options, judge):
+        outcomes.append(o)
+        if o.complaint:
+            print(f"FAILED {o.number} ({o.kind}): {o.complaint}", flush=True)
+        if o.note:
+            print(f"  {o.number} ({o.kind}, {o.meshes} meshes){o.note}", flush=True)
     failed = sum(bool(o.complaint) for o in outcomes)
     print(f"{len(outcomes)} scenes, seed {options.seed}, {failed} failed, {sum(bool(o.judged) for o in outcomes)} compared")
     for key in QUANTITIES:

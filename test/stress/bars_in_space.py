@@ -9,17 +9,13 @@ features of KINDS: a bump narrower than the cells of the first mesh, the tip of 
 scene from a first mesh with cells half as long, of order 2, and a target a third as large. Bars are judged as bars.py does. The exit code is 1 if a
 run failed, contact was missed in silence, a mesh had too many unknowns, or the force's bars held in less than 95 of 100.
 """
-import concurrent.futures
 import json
-import pathlib
 import random
-import shutil
 import sys
-import tempfile
 
 import adaptive
 import bars
-import scenes
+import trials
 from generate import log_uniform
 
 KINDS = ["bump", "cone", "pyramid", "step", "edge", "edge and cone"]
@@ -101,43 +97,37 @@ def judge(options, number):
     kind = options.kind or KINDS[number % len(KINDS)]
     lists, geo, size = deck(rng, kind)
     outcome = bars.Outcome(number, kind)
-    folder = pathlib.Path(tempfile.mkdtemp(prefix=f"rpc_bars_in_space_{number}_"))
-    try:
-        results = []
-        reference = bars.finer(lists, FINER, FINER_CELLS, MOST_DOFS_OF_REFERENCE)
-        for output, factor, most, more in (("out", 1, lists["Adapt"]["Max Dofs"], []), ("fine", FINER_CELLS, MOST_DOFS_OF_REFERENCE, reference)):
-            (folder / "scene.yaml").write_text(adaptive.yaml({"scene": lists}))
-            if geo:
-                (folder / "body.geo").write_text(f"S = {size / factor!r};\n" + geo)
-            result, summary = adaptive.run(options, folder, output, "--set=Output->Exodus=false", *more)
-            complaint = complaint_of(result, summary, most)
-            if complaint:
-                outcome.complaint = f"{output}: {complaint}"
-                return outcome
-            results.append(summary)
-        outcome.meshes = len(results[0]["adaptation"]["cycles"])
-        forces = [max(map(abs, summary["contact_force"])) for summary in results]
-        if forces[0] == 0 < forces[1] and not results[0]["adaptation"]["reason"]:
-            outcome.complaint = f"contact was missed: force 0, right: {results[1]['contact_force']}"
-        elif forces[1] > 0:
-            bars.compare(outcome, *results)
-    except Exception as error:  # a run that took too long, a file that is no JSON
-        outcome.complaint = f"{type(error).__name__}: {error}"[:300]
-    finally:
-        if options.keep and (outcome.complaint or outcome.note):
-            shutil.copytree(folder, pathlib.Path(options.keep) / f"bars_in_space_{options.seed}_{number:04d}", dirs_exist_ok=True)
-        shutil.rmtree(folder, ignore_errors=True)
+    with trials.folder(options, f"bars_in_space_{options.seed}_{number:04d}", lambda: outcome.complaint or outcome.note) as folder:
+        try:
+            results = []
+            reference = bars.finer(lists, FINER, FINER_CELLS, MOST_DOFS_OF_REFERENCE)
+            for output, factor, most, more in (("out", 1, lists["Adapt"]["Max Dofs"], []), ("fine", FINER_CELLS, MOST_DOFS_OF_REFERENCE, reference)):
+                (folder / "scene.yaml").write_text(trials.written({"scene": lists}, 0))
+                if geo:
+                    (folder / "body.geo").write_text(f"S = {size / factor!r};\n" + geo)
+                result, summary = adaptive.run(options, folder, output, "--set=Output->Exodus=false", *more)
+                complaint = complaint_of(result, summary, most)
+                if complaint:
+                    outcome.complaint = f"{output}: {complaint}"
+                    return outcome
+                results.append(summary)
+            outcome.meshes = len(results[0]["adaptation"]["cycles"])
+            forces = [max(map(abs, summary["contact_force"])) for summary in results]
+            if forces[0] == 0 < forces[1] and not results[0]["adaptation"]["reason"]:
+                outcome.complaint = f"contact was missed: force 0, right: {results[1]['contact_force']}"
+            elif forces[1] > 0:
+                bars.compare(outcome, *results)
+        except Exception as error:  # a run that took too long, a file that is no JSON
+            outcome.complaint = f"{type(error).__name__}: {error}"[:300]
     return outcome
 
 
 def main():
-    options = scenes.arguments(__doc__, 100, ("--kind", {"choices": KINDS}), ("--meshes", {"choices": ["automatic", "gmsh", "nested"], "default": "automatic"}))
-    numbers = [options.only] if options.only is not None else range(options.scenes)
+    options = trials.arguments(__doc__, 100, ("--kind", {"choices": KINDS}), ("--meshes", {"choices": ["automatic", "gmsh", "nested"], "default": "automatic"}))
     outcomes = []
-    with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
-        for o in pool.map(lambda number: judge(options, number), numbers):
-            outcomes.append(o)
-            print(f"{'FAILED ' if o.complaint else '  '}{o.number} ({o.kind}, {o.meshes} meshes): {o.complaint or json.dumps(o.judged)}{o.note}", flush=True)
+    for o in trials.each(options, judge):
+        outcomes.append(o)
+        print(f"{'FAILED ' if o.complaint else '  '}{o.number} ({o.kind}, {o.meshes} meshes): {o.complaint or json.dumps(o.judged)}{o.note}", flush=True)
     failed = sum(bool(o.complaint) for o in outcomes)
     print(f"{len(outcomes)} scenes in space, seed {options.seed}, {failed} failed, {sum(bool(o.judged) for o in outcomes)} compared")
     for key in bars.QUANTITIES:

@@ -14,7 +14,6 @@ order 1, without such laws; the reference has cells of P2 half as long and no gu
 and LARGE is LARGE_IN_SPACE. With --corners=1 loads do not end at the corners: stresses jump with the direction there, which stresses with prescribed tractions resolve
 worse than displacements. The exit code is 1 if a scene failed, an effectivity is below 1 by more than its reference may be off, or the median exceeds LARGE.
 """
-import concurrent.futures
 import dataclasses
 import json
 import math
@@ -26,9 +25,8 @@ import subprocess
 import sys
 import tempfile
 
-import adaptive
 import plane
-import scenes
+import trials
 from generate import log_uniform
 from solid import Bricks
 
@@ -224,7 +222,7 @@ def judge_runs(options, number, element, lists, runs):
     outcome = Outcome(number, element)
     folder = pathlib.Path(tempfile.mkdtemp(prefix=f"rpc_bounds_{number}_"))
     try:
-        (folder / "scene.yaml").write_text(adaptive.yaml({"scene": lists}))
+        (folder / "scene.yaml").write_text(trials.written({"scene": lists}, 0))
         found = []
         for output, body, more in runs:
             (folder / "body.msh").write_text(body.msh(1.0))
@@ -266,13 +264,13 @@ def judge_dents(options, number, rng, lists, shape_of):
     try:
         place, nx, ny, cut_x, cut_y, halves = shape_of
         (folder / "body.msh").write_text(plane.Body(mesh_of(rng, "P1", place, nx // 2, ny // 2, cut_x // 2, cut_y // 2, halves)).msh(1.0))
-        (folder / "scene.yaml").write_text(adaptive.yaml({"scene": lists}))
+        (folder / "scene.yaml").write_text(trials.written({"scene": lists}, 0))
         result, summary = run(options, folder, "out")
         if result.returncode == REFUSED or (summary and summary["energy_norm_squared"] < UNSTRAINED):
             outcome.refused = True
             return outcome
         lists["Steps"] = {"Times": [1.0, 2.0], "Checkpoint Every": 1}
-        (folder / "scene.yaml").write_text(adaptive.yaml({"scene": lists}))
+        (folder / "scene.yaml").write_text(trials.written({"scene": lists}, 0))
         result, summary = run(options, folder, "out", "--restart", "--set=Adapt->Meshes=nested", f"--set=Adapt->Target Relative Error={STEPS_TARGET}",
                               f"--set=Adapt->Max Dofs={MOST_DOFS}")
         cycles = (summary or {}).get("adaptation", {}).get("cycles", [])
@@ -310,12 +308,10 @@ def compare(outcome, summary, reference):
 
 
 def main():
-    options = scenes.arguments(__doc__, 100, ("--corners", {"type": int, "default": 0}), ("--laws", {"type": int, "default": 0}),
+    options = trials.arguments(__doc__, 100, ("--corners", {"type": int, "default": 0}), ("--laws", {"type": int, "default": 0}),
                                ("--kind", {"choices": ["plane", "space"], "default": "plane"}))
     large = LARGE_IN_SPACE if options.kind == "space" else LARGE
-    numbers = [options.only] if options.only is not None else range(options.scenes)
-    with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
-        outcomes = list(pool.map(lambda number: judge(options, number), numbers))
+    outcomes = list(trials.each(options, judge))
     for o in outcomes:
         if o.complaint:
             print(f"FAILED {o.number} ({o.element}): {o.complaint}")

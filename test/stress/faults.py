@@ -9,7 +9,6 @@ last bit; a message must tell the time of the step that failed; a run that was n
 kill -9 a restart must end as the whole run: after kill -9 to the last bit, after a signal to the tolerance. The exit code is 1 if a history failed.
 """
 import collections
-import concurrent.futures
 import contextlib
 import csv
 import json
@@ -26,6 +25,7 @@ import time
 
 import histories
 import scenes
+import trials
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "regression"))
 from film import Film  # noqa: E402
@@ -188,16 +188,14 @@ def judge(options, number):
 
 
 def main():
-    options = scenes.arguments(__doc__, 300)
-    numbers = [options.only] if options.only is not None else range(options.scenes)
+    options = trials.arguments(__doc__, 300)
     failed, faults, steps = 0, collections.Counter(), 0
-    with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
-        for number, family, fault, done, complaints in pool.map(lambda number: judge(options, number), numbers):
-            faults[fault] += 1
-            steps += done
-            if complaints:
-                failed += 1
-                print(f"FAILED {number} {family}, {fault}: {'; '.join(complaints)}", flush=True)
+    for number, family, fault, done, complaints in trials.each(options, judge):
+        faults[fault] += 1
+        steps += done
+        if complaints:
+            failed += 1
+            print(f"FAILED {number} {family}, {fault}: {'; '.join(complaints)}", flush=True)
     print(f"seed {options.seed}: {failed} of {sum(faults.values())} histories failed; {dict(faults)}; {steps} steps before the faults")
     return 1 if failed else 0
 

@@ -9,20 +9,14 @@ that this took, of each step, moves it. With --moved=obstacle the body is held, 
 does not end as it should; where the foundation carries no more than the given force, it must be refused with exit code 5. Where all that touches yields, and does not harden, a force does not determine the displacement:
 such scenes must end, and their displacements are not compared. Told are the Newton steps of the two ways. The exit code is 1 if a scene failed, or the median of the ratio of Newton steps is above 1.2, of obstacles 1.6.
 """
-import argparse
-import concurrent.futures
 import csv
 import json
-import os
-import pathlib
 import random
-import shutil
 import statistics
 import subprocess
 import sys
-import tempfile
 
-from friction_coefficients import written
+import trials
 from generate import log_uniform
 
 SAME, MOST_RATIO = 1e-10, {"side": 1.2, "obstacle": 1.6}  # curved obstacles are looked for several times
@@ -145,11 +139,11 @@ def eval_at(path, t):
 
 def run(rpc, deck, folder, name):
     """(exit code, summary or None, rows of the history, last words)"""
-    path = pathlib.Path(folder) / f"{name}.yaml"
-    path.write_text(f"{name}:\n" + written(deck))
+    path = folder / f"{name}.yaml"
+    path.write_text(f"{name}:\n" + trials.written(deck))
     result = subprocess.run([rpc, f"--input={path}", f"--output={folder}"], capture_output=True, text=True, errors="replace", check=False,
                             stdin=subprocess.DEVNULL, timeout=600)
-    summary, history = path.with_suffix(".json"), pathlib.Path(folder) / f"{name}.history.csv"
+    summary, history = path.with_suffix(".json"), folder / f"{name}.history.csv"
     rows = list(csv.DictReader(history.open())) if history.exists() else []
     return result.returncode, json.loads(summary.read_text()) if summary.exists() else None, rows, result.stderr.strip()[-300:]
 
@@ -199,16 +193,15 @@ def by_force(deck, forces, times, point=None):
     return deck
 
 
-def judge(rpc, moved, seed, number, keep):
+def judge(options, number):
     """(complaint or None, what happened, ratio of Newton steps or None)"""
-    if moved == "obstacle":
-        deck, times, path, point = with_tool(seed, number)
+    if options.moved == "obstacle":
+        deck, times, path, point = with_tool(options.seed, number)
         of_force, of_path, wanted, key = "contact_force", "obstacle_displacement_y", [eval_at(path, t) for t in times or [1.0]], "contact_force_y"
     else:
-        (deck, times), point, key = scene(seed, number), None, "top_reaction_y"
-    folder = tempfile.mkdtemp(prefix="rpc_forces_")
-    try:
-        code, given, rows, words = run(rpc, deck, folder, "moved")
+        (deck, times), point, key = scene(options.seed, number), None, "top_reaction_y"
+    with trials.folder(options, str(number)) as folder:
+        code, given, rows, words = run(options.rpc, deck, folder, "moved")
         if code != 0:
             return None, f"not compared: a displacement ends with {code}: {words}", None
         given_rows = rows
@@ -220,7 +213,7 @@ def judge(rpc, moved, seed, number, keep):
         if min(map(abs, forces)) <= NOTHING * deck["Material"]["Young's Modulus"] * max(map(abs, wanted)):
             return None, "nothing touches: no force to compare", None
         pressed = by_force(deck, forces, times or [1.0], point)
-        code, found, rows, words = run(rpc, pressed, folder, "pressed")
+        code, found, rows, words = run(options.rpc, pressed, folder, "pressed")
         if code == NO_SOLUTION and "Yield Stress" in deck["Contact"]:
             if any(word in words for word in ("all that the foundation carries", "carries at most")):
                 return None, "all of the foundation yields, refused", None
@@ -238,31 +231,13 @@ def judge(rpc, moved, seed, number, keep):
         what = f"{of}{found['element']} {found.get('kinematics', 'space')}, {found['dofs']} dofs: off by {off:.1e}, Newton {steps_of(given)} -> {steps_of(found)}"
         same = SAME if point is None or not all_yields(given, given_rows) else SAME_ON_HARDENING
         return (None if len(back) == len(wanted) and off <= same else f"displacements differ by {off:.2e}: {what}"), what, ratio
-    finally:
-        if keep:
-            shutil.copytree(folder, pathlib.Path(keep) / str(number), dirs_exist_ok=True)
-        shutil.rmtree(folder)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rpc", required=True)
-    parser.add_argument("--moved", default="side", choices=["side", "obstacle"])
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--scenes", type=int, default=50)
-    parser.add_argument("--only", type=int)
-    parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--keep", help="folder for the files of all scenes")
-    options = parser.parse_args()
-    rpc, failed, ratios = os.path.abspath(options.rpc), 0, []
-    numbers = range(options.scenes) if options.only is None else [options.only]
-    with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
-        for number, (complaint, what, ratio) in zip(numbers, pool.map(lambda k: judge(rpc, options.moved, options.seed, k, options.keep), numbers)):
-            failed += complaint is not None
-            ratios += [ratio] if ratio is not None else []
-            print(f"{number}: {'FAILED ' + complaint if complaint else what}", flush=True)
+    options = trials.arguments(__doc__, 50, ("--moved", {"default": "side", "choices": ["side", "obstacle"]}))
+    failed, ratios = trials.compared(options, judge)
     median = statistics.median(ratios) if ratios else 0
-    print(f"{failed} of {len(numbers)} failed; {len(ratios)} compared; Newton steps by force over those by displacement: median {median:.2f}, "
+    print(f"{failed} of {len(trials.numbers(options))} failed; {len(ratios)} compared; Newton steps by force over those by displacement: median {median:.2f}, "
           f"most {max(ratios, default=0):.2f}")
     return 1 if failed or median > MOST_RATIO[options.moved] else 0
 

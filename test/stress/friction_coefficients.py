@@ -16,6 +16,8 @@ import subprocess
 import sys
 import tempfile
 
+from trials import written
+
 MOST_NEWTON, TOLERANCE = 20, 1e-8
 RESIDUALS = ("kkt_residual", "equilibrium_residual", "energy_balance", "duality_gap")
 CLAMPED = {"X": 0.0, "Y": 0.0}
@@ -58,15 +60,6 @@ def scene(name, coefficient, yields):
             side["Yield Stress"] = stress
     deck["Output"] = {"Exodus": False, "CSV": False}
     return deck
-
-
-def written(entries, indent=2):
-    """Entries of a deck in YAML, whose texts and numbers are those of JSON."""
-    lines = []
-    for key, value in entries.items():
-        inner = "\n" + written(value, indent + 2) if isinstance(value, dict) else f" {json.dumps(value)}\n"
-        lines.append(f"{' ' * indent}{key}:{inner}")
-    return "".join(lines)
 
 
 def run(rpc, name, coefficient, yields):

@@ -11,7 +11,6 @@ fall, as sums, and at each node from the run that stopped to the whole one, whos
 the sum over the steps of what they miss falls, and so does, with friction (friction_histories.py), the sum of what it gives back. Without
 memory nothing is dissipated by denting, and without friction, too, the last step is that of a run of that step alone. Histories whose steps rounding keeps from their tolerance, as scenes.py has it, are counted. The exit code is 1 if a history failed.
 """
-import concurrent.futures
 import dataclasses
 import json
 import math
@@ -26,6 +25,7 @@ import fields
 import generate
 import scenes
 import space
+import trials
 from generate import log_uniform
 from scene import verdict
 
@@ -318,14 +318,12 @@ def judge(options, number, name, make_one):
 
 def suite(description, count, name, make_one):
     """Judges histories as the command line asks. @return exit code"""
-    options = scenes.arguments(description, count)
-    numbers = [options.only] if options.only is not None else range(options.scenes)
+    options = trials.arguments(description, count)
     outcomes = []
-    with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
-        for o in pool.map(lambda number: judge(options, number, name, make_one), numbers):
-            outcomes.append(o)
-            if o.complaints:
-                print(f"FAILED {o.number} {o.family}: {'; '.join(o.complaints)}", flush=True)
+    for o in trials.each(options, judge, name, make_one):
+        outcomes.append(o)
+        if o.complaints:
+            print(f"FAILED {o.number} {o.family}: {'; '.join(o.complaints)}", flush=True)
     failed = sum(1 for o in outcomes if o.complaints)
     print(f"seed {options.seed}: {failed} of {len(outcomes)} histories failed, {sum(o.steps for o in outcomes)} steps, "
           f"{sum(o.dented for o in outcomes)} with dents, {sum(o.sticks_and_slips for o in outcomes)} with stick and slip, "

@@ -24,6 +24,7 @@ import tempfile
 import time
 
 import scenes
+import trials
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "regression"))
 from film import Film  # noqa: E402
@@ -170,8 +171,8 @@ def judge(options, mesh, number, whole, seconds, folder):
 
 
 def main():
-    options = scenes.arguments(__doc__, 50)
-    numbers = [options.only] if options.only is not None else range(options.scenes)
+    options = trials.arguments(__doc__, 50)
+    numbers = trials.numbers(options)
     failed, kills, early = 0, collections.Counter(), 0
     with tempfile.TemporaryDirectory(prefix="rpc_kills_") as name, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for mesh in MESHES:

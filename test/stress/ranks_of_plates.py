@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Newton steps and energies of random plates on one, two and three ranks, which ought to be alike.
 
-    python3 ranks_of_plates.py --rpc=build/rpc [--mpiexec="mpiexec -n"] [--seed=1] [--scenes=60] [--most=3] [--only=N] [--ranks=1,2,3] [--keep=FOLDER]
+    python3 ranks_of_plates.py --rpc=build/rpc [--mpiexec="mpiexec --oversubscribe --bind-to none"] [--seed=1] [--scenes=60] [--most=3] [--only=N] [--ranks=1,2,3] [--keep=FOLDER]
 
 A plate of two blocks or one, slender or not, clamped or on springs, lies on or above a plane foundation, a bump or a rough one, which is rigid or yields; as a .msh file, a .geo
 file of transfinite blocks, or a box. Prints the plates by the largest over the least number of Newton steps. The exit code is 1 if a run fails, energies
 differ by more than 1e-8 of themselves, or steps differ by more than --most.
 """
-import argparse
 import dataclasses
 import json
 import math
-import os
 import pathlib
 import random
 import shutil
@@ -19,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 
+import trials
 from plane import Body, Grid
 from solid import Bricks
 
@@ -136,19 +135,10 @@ def plate(seed, number):
     return Plate(f"{text}, h = {thickness:.3g}, {where}, {law}, held: {' '.join(held) or 'none'}", deck, files)
 
 
-def written(entries, indent=2):
-    """Entries of a deck in YAML, whose texts and numbers are those of JSON."""
-    lines = []
-    for key, value in entries.items():
-        inner = "\n" + written(value, indent + 2) if isinstance(value, dict) else f" {json.dumps(value)}\n"
-        lines.append(f"{' ' * indent}{key}:{inner}")
-    return "".join(lines)
-
-
 def run(options, folder, ranks):
     """The summary, or why there is none."""
     out = folder / str(ranks)
-    launch = [*options.mpiexec.split(), str(ranks)] if ranks > 1 else []
+    launch = [*options.mpiexec.split(), "-n", str(ranks)] if ranks > 1 else []
     result = subprocess.run([*launch, options.rpc, "--input=plate.yaml", f"--output={out}"], cwd=folder, capture_output=True, text=True,
                             errors="replace", check=False, stdin=subprocess.DEVNULL, timeout=300)
     path = out / "plate.json"
@@ -164,7 +154,7 @@ def judged(options, number):
         folder = pathlib.Path(name)
         for file, content in p.files.items():
             (folder / file).write_text(content)
-        (folder / "plate.yaml").write_text("plate:\n" + written(p.deck))
+        (folder / "plate.yaml").write_text("plate:\n" + trials.written(p.deck))
         found = [run(options, folder, ranks) for ranks in options.ranks]
         if options.keep:
             shutil.copytree(folder, pathlib.Path(options.keep) / str(number), dirs_exist_ok=True)
@@ -185,19 +175,10 @@ def judged(options, number):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rpc", required=True)
-    parser.add_argument("--mpiexec", default="mpiexec -n")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--scenes", type=int, default=60)
-    parser.add_argument("--most", type=int, default=3)
-    parser.add_argument("--only", type=int)
-    parser.add_argument("--ranks", type=lambda text: [int(n) for n in text.split(",")], default=[1, 2, 3])
-    parser.add_argument("--keep")
-    options = parser.parse_args()
-    options.rpc = os.path.abspath(options.rpc)
+    options = trials.arguments(__doc__, 60, ("--most", {"type": int, "default": 3}),
+                              ("--ranks", {"type": lambda text: [int(n) for n in text.split(",")], "default": [1, 2, 3]}))
     rows, failed = [], 0
-    for number in [options.only] if options.only is not None else range(options.scenes):
+    for number in trials.numbers(options):
         steps, complaints, text = judged(options, number)
         failed += bool(complaints)
         print(f"{number}: {steps} {text}" + "".join(f"; {c}" for c in complaints), flush=True)

@@ -11,18 +11,13 @@ as it should. Where the foundation carries no more than the given forces, they m
 touches is short of yielding, without hardening, forces hardly determine the motions: such scenes must end, and are not compared. The exit code is 1
 if a scene failed, the median of what motions are off is above 1e-10, or that of the ratio of Newton steps above 1.5.
 """
-import argparse
-import concurrent.futures
 import json
-import os
-import pathlib
 import random
-import shutil
 import statistics
 import sys
-import tempfile
 
 import forces
+import trials
 
 SAME_FORCE, SAME_MOTION, MEDIAN, MOST_RATIO = 1e-10, 1e-7, 1e-10, 1.5
 SPARE = 0.1  # of what touches: so much is short of yielding where motions are compared
@@ -79,10 +74,7 @@ def by_forces(deck, loads, moved, times, springs):
         if stiffness:
             top[("Rotation Stiffness " if "Rotation" in motion else "Stiffness ") + motion[-1]] = stiffness
             values = [value + stiffness * q for value, q in zip(values, moved[motion])]
-        text = repr(values[-1])
-        for time, value in reversed(list(zip(times[:-1], values[:-1]))):
-            text = f"t < {time + 0.01!r} ? {value!r} : ({text})"
-        top[of_load(motion, "Force")] = text
+        top[of_load(motion, "Force")] = forces.steps_in_time(values, times)
     return deck
 
 
@@ -95,12 +87,11 @@ def spare(deck, summary, rows):
     return min(1 - yielded / touching if touching > 0 else 0 for yielded, touching in pairs)
 
 
-def judge(rpc, seed, number, keep):
+def judge(options, number):
     """(complaint or None, what happened, (ratio of Newton steps, what motions are off) or None)"""
-    deck, times, motions = scene(seed, number)
-    folder = tempfile.mkdtemp(prefix="rpc_rigid_")
-    try:
-        code, given, given_rows, words = forces.run(rpc, deck, folder, "moved")
+    deck, times, motions = scene(options.seed, number)
+    with trials.folder(options, str(number)) as folder:
+        code, given, given_rows, words = forces.run(options.rpc, deck, folder, "moved")
         if code != 0:
             return None, f"not compared: a path ends with {code}: {words}", None
         loads = {motion: read(given, given_rows, motion, "force") for motion in motions}
@@ -109,9 +100,9 @@ def judge(rpc, seed, number, keep):
         modulus = deck["Material"]["Young's Modulus"]
         if min(map(abs, loads["Y"])) <= forces.NOTHING * modulus * largest:
             return None, "nothing touches: no force to compare", None
-        rng = random.Random(f"springs {seed} {number}")
+        rng = random.Random(f"springs {options.seed} {number}")
         springs = {motion: modulus * forces.log_uniform(rng, -2, 0) for motion in motions if rng.random() < 0.3}
-        code, found, rows, words = forces.run(rpc, by_forces(deck, loads, moved, times or [1.0], springs), folder, "pressed")
+        code, found, rows, words = forces.run(options.rpc, by_forces(deck, loads, moved, times or [1.0], springs), folder, "pressed")
         if code == forces.NO_SOLUTION and (spare(deck, given, given_rows) < SPARE or any(word in words for word in ("all that the foundation carries", "carries at most", "friction holds"))):
             return None, "all that the foundation carries, refused", None
         if code != 0:
@@ -128,30 +119,13 @@ def judge(rpc, seed, number, keep):
             return None, f"{left:.2f} of what touches does not yield: not compared; {what}", None
         fits = off <= SAME_MOTION and back <= SAME_FORCE
         return (None if fits else f"the force differs by {back:.2e}, motions by {off:.2e}: {what}"), what, (ratio, off)
-    finally:
-        if keep:
-            shutil.copytree(folder, pathlib.Path(keep) / str(number), dirs_exist_ok=True)
-        shutil.rmtree(folder)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rpc", required=True)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--scenes", type=int, default=50)
-    parser.add_argument("--only", type=int)
-    parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--keep", help="folder for the files of all scenes")
-    options = parser.parse_args()
-    rpc, failed, ratios = os.path.abspath(options.rpc), 0, []
-    numbers = range(options.scenes) if options.only is None else [options.only]
-    with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
-        for number, (complaint, what, ratio) in zip(numbers, pool.map(lambda k: judge(rpc, options.seed, k, options.keep), numbers)):
-            failed += complaint is not None
-            ratios += [ratio] if ratio is not None else []
-            print(f"{number}: {'FAILED ' + complaint if complaint else what}", flush=True)
+    options = trials.arguments(__doc__, 50)
+    failed, ratios = trials.compared(options, judge)
     steps, off = [[both[k] for both in ratios] or [0] for k in (0, 1)]
-    print(f"{failed} of {len(numbers)} failed; {len(ratios)} compared; motions off by {statistics.median(off):.1e} in the median, {max(off):.1e} at most; "
+    print(f"{failed} of {len(trials.numbers(options))} failed; {len(ratios)} compared; motions off by {statistics.median(off):.1e} in the median, {max(off):.1e} at most; "
           f"Newton steps by force over those by path: median {statistics.median(steps):.2f}, most {max(steps):.2f}")
     return 1 if failed or statistics.median(off) > MEDIAN or statistics.median(steps) > MOST_RATIO else 0
 

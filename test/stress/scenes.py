@@ -10,7 +10,6 @@ forces that balance. One without must exit 5 with one message that gives the rea
 those scenes. Every 20 scenes a line on standard error says how many are done; interrupted (SIGINT, SIGTERM), the report is of these. The exit
 code is 1 if a scene failed or was not run. --keep=DIR keeps the folders of failed scenes, and of --only.
 """
-import argparse
 import concurrent.futures
 import csv
 import dataclasses
@@ -33,6 +32,7 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "families")
 import families  # noqa: E402, after its folder
 import generate  # noqa: E402
 import space  # noqa: E402
+import trials  # noqa: E402
 from scene import REASONS, applied_resultant, deck, radial_size  # noqa: E402
 
 TIME_LIMIT = 120  # [s]
@@ -341,30 +341,9 @@ def judge_all(options, numbers_):
     return outcomes
 
 
-def arguments(description, count, *more):
-    """The options of a suite of scenes.
-
-    count: scenes unless told otherwise; more: (name, settings) of options that this suite alone has.
-    """
-    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rpc", required=True)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--scenes", type=int, default=count)
-    parser.add_argument("--only", type=int)
-    parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--np", type=int, default=1)
-    parser.add_argument("--mpiexec", default="mpiexec --oversubscribe --bind-to none")
-    parser.add_argument("--keep", help="folder for the files of those that failed")
-    for name, settings in more:
-        parser.add_argument(name, **settings)
-    options = parser.parse_args()
-    options.rpc = os.path.abspath(options.rpc)
-    return options
-
-
 def main():
     families_ = {"help": "only these of the scenes, separated by commas: " + ", ".join(FAMILIES)}
-    options = arguments(__doc__, 510, ("--first", {"type": int, "default": 0}), ("--family", families_))
+    options = trials.arguments(__doc__, 510, ("--first", {"type": int, "default": 0}), ("--family", families_))
     print(f"seed {options.seed}", flush=True)
     numbers_ = chosen(options)
     return report(options, judge_all(options, numbers_), len(numbers_))
