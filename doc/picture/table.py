@@ -47,6 +47,9 @@ class Table:
             return
         names, rows = self._read()
         self.kind = next((kind for kind, needed in KINDS.items() if set(needed) <= set(names)), None)
+        if {"folder", "exit_code"} <= set(names):
+            raise PictureError(f'"{path}" is the table of a study, whose columns go with its own parameters; remedy: draw its runs in one picture, '
+                               f'{os.path.join(os.path.dirname(path), "run-*", "deck.contact.csv")}, or its columns as python/examples/yield_limit.py does')
         if not self.kind:
             raise PictureError(f'"{path}" is no table of rpc: it must have the columns {" or ".join(", ".join(some) for some in KINDS.values())}'
                                f'; those that can be drawn are *.contact.csv, *.history.csv and *.points.csv')

@@ -21,7 +21,7 @@ from .result import RECORD, load
 from .runs import launcher, start
 
 LASTING = {0, 4, 5}  # exit codes that come from the deck alone: such a run is not run again
-RESULTS = ("contact_force", "max_pressure", "contact_length", "contact_area", "energy_J")  # of the summary that study.csv has; of the force its size
+RESULTS = ("contact_force", "obstacle_displacement", "max_pressure", "contact_length", "contact_area", "energy_J")  # of the summary that study.csv has; of vectors the size
 
 
 def study(deck, parameters, *, folder=None, workers=1, progress=True, ranks=1, program=None, timeout=None):

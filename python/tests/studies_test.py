@@ -99,15 +99,18 @@ class Studies(TestCase):
             self.assertEqual(row["contact_force_error_bar"], "")  # one mesh shows none
             self.assertGreater(float(row["seconds"]), 0)
 
-    def test_the_table_has_how_far_a_force_moves_a_side(self):
-        deck = beam(Dirichlet={"top": {"X": 0, "Force Y": -20}}, Traction={})
-        results, _ = self.study(deck, {"Material->Young's Modulus": [1000]}, folder=self.folder / "study")
-        with open(self.folder / "study" / "study.csv", newline="") as file:
-            row = next(csv.DictReader(file))
-        moved = results[0].summary["force_displacement"]["top"]
-        self.assertLess(moved[1], -1e-3)
-        self.assertAlmostEqual(float(row["force_displacement of top"]), -moved[1])
-        self.assertEqual(row["force_displacement of top_unit"], "m")
+    def test_the_table_has_how_far_a_force_moves_a_side_or_an_obstacle(self):
+        obstacle = {"Type": "sphere", "Centre": [2.5, -3], "Radius": 3, "Force Y": 20}
+        for deck, name, moved_of in (
+                (beam(Dirichlet={"top": {"X": 0, "Force Y": -20}}, Traction={}), "force_displacement of top", lambda s: -s["force_displacement"]["top"][1]),
+                (beam(Contact__Obstacle=obstacle, Traction={}), "obstacle_displacement", lambda s: s["obstacle_displacement"][1])):
+            with self.subTest(name):
+                results, _ = self.study(deck, {"Material->Young's Modulus": [1000]}, folder=self.folder / "study")
+                with open(self.folder / "study" / "study.csv", newline="") as file:
+                    row = next(csv.DictReader(file))
+                self.assertGreater(moved_of(results[0].summary), 1e-3)
+                self.assertAlmostEqual(float(row[name]), moved_of(results[0].summary))
+                self.assertEqual(row[f"{name}_unit"], "m")
 
     def test_a_file_of_an_obstacle_is_found_and_counts(self):
         heights, deck = self.folder / "heights.csv", self.folder / "rough.xml"

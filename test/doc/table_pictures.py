@@ -312,6 +312,7 @@ class Refusals(RpcTestCase):
         for name, content, *parts in (
                 ("none", None, "no such file", "Steps->Times"), ("empty", "", "is empty"), ("blank", "\n\n", "is empty"),
                 ("header", text.splitlines()[0] + "\n", "has no rows"), ("other", "a,b\n1,2\n", "is no table of rpc: it must have the columns"),
+                ("study", "folder,exit_code,Contact->Yield Stress,seconds,reason\nrun-1,0,2,0.1,\n", "is the table of a study", "run-*/deck.contact.csv"),
                 ("short", text[: len(text) // 2].rsplit(",", 3)[0] + "\n", "a row must have 9 entries", "got "),
                 ("long", text + "1,2,3,4,5,6,7,8,9,10\n", f"row {N + 2}: a row must have 9 entries", "got 10"),
                 ("words", text.replace(",0.1,", ",much,"), "column u_nu: entries must be numbers", 'got "much"'),
