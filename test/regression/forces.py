@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Sides that a force moves as one: what displacement it leads to, what it is refused for, and that a restart goes on with the same digits."""
 
-import csv
-import json
 import unittest
 
-from rpc_run import RANKS, RpcTestCase
+from rpc_run import RANKS, WrittenDeckTestCase
 
 BAD_INPUT, NO_SOLUTION = 2, 5
 SAME = 1e-10
@@ -42,20 +40,7 @@ def written(deck, top, law="", more=""):
     return deck.replace("TOP", top).replace("LAW", law).replace("MORE", more)
 
 
-class Forces(RpcTestCase):
-    def solve(self, name, text, *arguments, code=0):
-        path = self.folder / f"{name}.yaml"
-        path.write_text(text)
-        result = self.rpc(f"--input={path}", f"--output={name}", *arguments, code=code)
-        return result if code else json.loads((self.folder / name / f"{name}.json").read_text())
-
-    def history(self, name):
-        return list(csv.DictReader((self.folder / name / f"{name}.history.csv").read_text().splitlines()))
-
-    def refuse(self, text, code, words):
-        result = self.solve("refused", text, code=code)
-        self.expect_refusal(result, code, words)
-
+class Forces(WrittenDeckTestCase):
     def test_a_force_leads_to_the_displacement_that_takes_it(self):
         for deck, law, depth in [(BOX, "", 0.02), (BOX, YIELDS, 0.01), (BOX, SPRINGS, 0.03), (BOX, RUBS, 0.02), (BALL, "Yield Stress: 3.0e+7", 0.01)]:
             with self.subTest(law=law, depth=depth):
@@ -86,14 +71,7 @@ class Forces(RpcTestCase):
 
     @unittest.skipIf(RANKS > 1, "once is enough")
     def test_a_restart_goes_on_with_the_same_digits(self):
-        deck = written(BOX, f"Force Y: {FORCE}", YIELDS, STEPS)
-        self.solve("whole", deck, "--set=Steps->Checkpoint Every=2")
-        (self.folder / "parts.yaml").write_text(deck)
-        self.rpc("--input=parts.yaml", "--output=parts", "--set=Steps->Times={0.5, 1}", "--set=Steps->Checkpoint Every=2")
-        self.rpc("--input=parts.yaml", "--output=parts", "--set=Steps->Checkpoint Every=2", "--restart")
-        whole, parts = self.history("whole"), self.history("parts")
-        drop = ("seconds",)
-        self.assertEqual([{k: v for k, v in row.items() if k not in drop} for row in parts], [{k: v for k, v in row.items() if k not in drop} for row in whole])
+        self.expect_restart_with_the_same_digits(written(BOX, f"Force Y: {FORCE}", YIELDS, STEPS))
 
     def test_what_a_foundation_cannot_bear_has_no_solution(self):
         self.refuse(written(BOX, "Force Y: -80.5", YIELDS), NO_SOLUTION, ["carries at most 78.55", '"Contact->Yield Stress"'])

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Obstacles that a force moves: where it leads them, what they are refused for, and that a restart goes on with the same digits."""
 
-import csv
-import json
 import unittest
 
-from rpc_run import RANKS, RpcTestCase
+from rpc_run import RANKS, WrittenDeckTestCase
 
 BAD_INPUT, NO_SOLUTION = 2, 5
 SAME = 1e-10
@@ -59,24 +57,7 @@ def by_force(obstacle, force):
     return obstacle.replace(" FORCE", f", Force Y: {force}").replace(" PATH", "")
 
 
-class ObstacleForces(RpcTestCase):
-    def solve(self, name, text, *arguments, code=0):
-        path = self.folder / f"{name}.yaml"
-        path.write_text(text)
-        result = self.rpc(f"--input={path}", f"--output={name}", *arguments, code=code)
-        return result if code else json.loads((self.folder / name / f"{name}.json").read_text())
-
-    def history(self, name):
-        return list(csv.DictReader((self.folder / name / f"{name}.history.csv").read_text().splitlines()))
-
-    def columns(self, name, *begin):
-        rows = self.history(name)
-        return [[float(next(v for k, v in row.items() if k.startswith(each))) for row in rows] for each in begin]
-
-    def refuse(self, text, code, words):
-        result = self.solve("refused", text, code=code)
-        self.expect_refusal(result, code, words)
-
+class ObstacleForces(WrittenDeckTestCase):
     def test_a_force_leads_to_the_place_that_takes_it(self):
         axisymmetric = "Kinematics: axisymmetric"
         scenes = [(BOX, ROLLER, "Q2", "", 0.02, ""), (BOX, ROLLER, "P1", YIELDS, 0.01, ""), (BOX, ROLLER, "Q1", SPRINGS, 0.03, ""),
@@ -127,13 +108,7 @@ class ObstacleForces(RpcTestCase):
 
     @unittest.skipIf(RANKS > 1, "once is enough")
     def test_a_restart_goes_on_with_the_same_digits(self):
-        deck = written(BOX, by_force(ROLLER, FORCE), law=YIELDS, more=STEPS)
-        self.solve("whole", deck, "--set=Steps->Checkpoint Every=2")
-        (self.folder / "parts.yaml").write_text(deck)
-        self.rpc("--input=parts.yaml", "--output=parts", "--set=Steps->Times={0.5, 1}", "--set=Steps->Checkpoint Every=2")
-        self.rpc("--input=parts.yaml", "--output=parts", "--set=Steps->Checkpoint Every=2", "--restart")
-        whole, parts = self.history("whole"), self.history("parts")
-        self.assertEqual([{k: v for k, v in row.items() if k != "seconds"} for row in parts], [{k: v for k, v in row.items() if k != "seconds"} for row in whole])
+        self.expect_restart_with_the_same_digits(written(BOX, by_force(ROLLER, FORCE), law=YIELDS, more=STEPS))
 
     def test_what_a_foundation_cannot_bear_has_no_solution(self):
         self.refuse(written(BOX, by_force(ROLLER, "-80.5"), law=YIELDS), NO_SOLUTION, ["carries at most 7", '"Contact->Yield Stress"', "the other way round"])

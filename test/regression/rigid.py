@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Rigid sides: closed forms, equalities, how forces and motions lead to each other, what is refused, and a restart with the same digits."""
 
-import csv
-import json
 import math
 import unittest
 
-from rpc_run import RANKS, RpcTestCase
+from rpc_run import RANKS, WrittenDeckTestCase
 
 BAD_INPUT, NO_SOLUTION = 2, 5
 SAME = 1e-10
@@ -46,16 +44,7 @@ def written(deck, top="", law="", more="", element="Q2"):
     return deck.replace("TOP", top).replace("LAW", law).replace("MORE", more).replace("ELEMENT", element)
 
 
-class Rigid(RpcTestCase):
-    def solve(self, name, text, *arguments, code=0):
-        path = self.folder / f"{name}.yaml"
-        path.write_text(text)
-        result = self.rpc(f"--input={path}", f"--output={name}", *arguments, code=code)
-        return result if code else json.loads((self.folder / name / f"{name}.json").read_text())
-
-    def refuse(self, text, code, words):
-        self.expect_refusal(self.solve("refused", text, code=code), code, words)
-
+class Rigid(WrittenDeckTestCase):
     def near(self, found, wanted, size, same=SAME):
         found, wanted = (list(each) if isinstance(each, (list, tuple)) else [each] for each in (found, wanted))
         self.assertEqual(len(found), len(wanted))
@@ -155,16 +144,7 @@ class Rigid(RpcTestCase):
     @unittest.skipIf(RANKS > 1, "once is enough")
     def test_a_restart_goes_on_with_the_same_digits(self):
         deck = written(PUNCH, f'X: "0.001*t", Force Y: {FORCE}, Moment Z: "t", Rotation Stiffness Z: 20.0', "Yield Stress: 40.0\n    " + ROLLER, STEPS)
-        self.solve("whole", deck, "--set=Steps->Checkpoint Every=2")
-        (self.folder / "parts.yaml").write_text(deck)
-        self.rpc("--input=parts.yaml", "--output=parts", "--set=Steps->Times={0.5, 1}", "--set=Steps->Checkpoint Every=2")
-        self.rpc("--input=parts.yaml", "--output=parts", "--set=Steps->Checkpoint Every=2", "--restart")
-        rows = {}
-        for name in ("whole", "parts"):
-            table = list(csv.DictReader((self.folder / name / f"{name}.history.csv").read_text().splitlines()))
-            rows[name] = [{key: value for key, value in row.items() if key != "seconds"} for row in table]
-        self.assertEqual(rows["parts"], rows["whole"])
-        last = rows["whole"][-1]
+        last = self.expect_restart_with_the_same_digits(deck)[-1]
         self.near(float(last["top_moment_z"]), 2.0 - 20.0 * float(last["top_rotation_z"]), 2.0)
         self.near(float(last["top_displacement_x"]), 0.002, 0.002)
 

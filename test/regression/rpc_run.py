@@ -3,6 +3,7 @@
 
 import concurrent.futures
 import contextlib
+import csv
 import json
 import os
 import pathlib
@@ -100,3 +101,35 @@ class RpcTestCase(unittest.TestCase):
             self.assertNotIn(noise, result.stdout + result.stderr)
         if RANKS == 1:  # mpiexec has words of its own
             self.assertEqual(len(result.stderr.strip().splitlines()), 1, text)
+
+
+class WrittenDeckTestCase(RpcTestCase):
+    """Tests that write their decks as YAML text; each run has a name, its output a folder of that name."""
+
+    def solve(self, name, text, *arguments, code=0):
+        """The summary of a run, or the finished process where it is to end with another exit code than 0."""
+        path = self.folder / f"{name}.yaml"
+        path.write_text(text)
+        result = self.rpc(f"--input={path}", f"--output={name}", *arguments, code=code)
+        return result if code else json.loads((self.folder / name / f"{name}.json").read_text())
+
+    def history(self, name):
+        return list(csv.DictReader((self.folder / name / f"{name}.history.csv").read_text().splitlines()))
+
+    def columns(self, name, *begin):
+        """The numbers of the first column of the history whose name begins so, for each beginning."""
+        rows = self.history(name)
+        return [[float(next(v for k, v in row.items() if k.startswith(each))) for row in rows] for each in begin]
+
+    def refuse(self, text, code, words):
+        self.expect_refusal(self.solve("refused", text, code=code), code, words)
+
+    def expect_restart_with_the_same_digits(self, text):
+        """A deck with times 0.5 to 2 against a run that stops at 1 and goes on; the rows of the history."""
+        every = "--set=Steps->Checkpoint Every=2"
+        self.solve("whole", text, every)
+        self.solve("parts", text, "--set=Steps->Times={0.5, 1}", every)
+        self.solve("parts", text, every, "--restart")
+        whole, parts = ([{k: v for k, v in row.items() if k != "seconds"} for row in self.history(name)] for name in ("whole", "parts"))
+        self.assertEqual(parts, whole)
+        return whole
