@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rpc/analysis/problem.hpp"
+#include "derivative_checks.hpp"
 #include "rpc/analysis/solve_step.hpp"
-#include "rpc/analysis/solver_state.hpp"
-#include "rpc/contact/iterate.hpp"
 #include "rpc/mesh/box.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -40,29 +38,12 @@ struct Pressed {
     condition.rigid = top;
     model.dirichlet = {condition};
     if (space && !springs) model.dirichlet[0].rigid->displacement[2] = ScalarField(0.);
-    contact::ContactOptions foundation;
-    foundation.side = "bottom";
-    foundation.gap = ScalarField("gap", [](const Point &x) { return 0.01 * std::pow(x[0] - 0.9, 2); });
-    foundation.yield_stress = ScalarField(yield);
-    model.contact = {foundation};
+    model.contact = {round_gap(yield)};
     problem = std::make_shared<analysis::Problem>(
         std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())), model);
   }
   const fem::Discretization &d() const { return problem->discretization(); }
   fem::RigidMotions &top() { return *model.dirichlet[0].rigid; }
-
-  /// A displacement that may be added to an admissible one, without order, of a size. It does not depend on the ranks.
-  Vector displacement(const analysis::Step &step, const double phase, const double size) const
-  {
-    Vector v(d().owned_dofs);
-    const auto id = d().mesh->node_id;
-    for (LO i = 0; i < num_local(*d().owned_dofs); ++i) {
-      const double number = static_cast<double>(dof(d().dim(), id(node_of(d().dim(), i)), component_of(d().dim(), i)));
-      v.replaceLocalValue(i, size * std::sin(phase + 12.9898 * number * (1 + 1e-3 * number)));
-    }
-    fem::clear_prescribed(step.elastic.dirichlet, v);
-    return v;
-  }
 };
 
 std::vector<Pressed> bodies(const double yield = 30, const bool springs = true)
@@ -88,7 +69,7 @@ TEST(RigidSides, TheFunctionalIsTheEnergyOfBodyLoadsAndSpringsAndMovesTheSideAsO
     const auto step = problem.step(1);
     analysis::SolverState state(problem);
     contact::Iterate iterate(step.elastic, step.contact, state.hessian());
-    Vector u = pressed.displacement(step, 1, 1e-3);
+    Vector u = irregular_displacement(*pressed.problem, step, 1, 1e-3);
     u.update(1., *step.elastic.dirichlet.value, 1.);
     const double energy = energy_of(pressed, step, u);
     EXPECT_NEAR(iterate.value(u) / energy, 1, 1e-12);
@@ -119,43 +100,13 @@ TEST(RigidSides, TheGradientIsTheDerivativeAndTheSolverInvertsTheTangent)
 {
   for (const Pressed &pressed : bodies(1e8)) { // points that are pressed in are closed
     const auto step = pressed.problem->step(1);
-    analysis::SolverState state(*pressed.problem);
-    contact::Iterate iterate(step.elastic, step.contact, state.hessian());
-    Vector u = pressed.displacement(step, 2, 1e-3);
+    Vector u = irregular_displacement(*pressed.problem, step, 2, 1e-3);
     u.update(1., *step.elastic.dirichlet.value, 1.);
     Vector press(u.getMap());
     fem::add_resultants(step.elastic.dirichlet.rigid[0], {0, -0.01, 0, 0, 0, 0.003}, press);
     fem::clear_prescribed(step.elastic.dirichlet, press);
     u.update(1., press, 1.);
-    Vector F(u.getMap());
-    iterate.gradient(u, F);
-    iterate.update_hessian(u);
-    const Vector b = pressed.displacement(step, 3, 1);
-    Vector x(u.getMap());
-    const auto solved = state.linear().solve(b, x, 1e-10);
-    ASSERT_TRUE(solved.converged) << solved.reason;
-    const auto moved = [&](const double t) {
-      Vector v(u, Teuchos::Copy);
-      v.update(t, x, 1.);
-      return v;
-    };
-    double t = 5e-6 / x.normInf(); // no point changes its state
-    Vector change(u.getMap());
-    iterate.gradient(moved(t), change);
-    change.update(-1., F, 1.);
-    change.scale(1 / t);
-    change.update(-1., b, 1.);
-    EXPECT_LT(change.norm2() / b.norm2(), 1e-6); // differences round
-    const double slope = F.dot(x), curvature = b.dot(x), at_u = iterate.value(u);
-    double before = 0;
-    for (int halving = 0; halving < 3; ++halving, t /= 2) { // first order: half the error at half the step
-      const double error = (iterate.value(moved(t)) - at_u) / t - slope;
-      EXPECT_NEAR(error / (0.5 * t * curvature), 1, 1e-3) << halving;
-      if (halving > 0) {
-        EXPECT_NEAR(before / error, 2, 1e-2);
-      }
-      before = error;
-    }
+    expect_derivatives(*pressed.problem, step, u, 5e-6);
   }
 }
 
