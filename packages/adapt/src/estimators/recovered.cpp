@@ -193,29 +193,25 @@ struct NodalPressures {
   }
 };
 
-/// What no pressure can exceed at the points of all contact sides, maybe infinite; collective.
-double highest_bound(const Comm &comm, const contact::ContactNodes &c)
-{
-  const contact::ContactNodes points = c;
-  double highest = 0;
-  Kokkos::parallel_reduce(
-      "rpc::adapt::highest_yield_stress", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, double &most) { most = math::fmax(most, contact::largest_bearable(points.law(i))); },
-      Kokkos::Max<double>(highest));
-  return max_all(comm, std::max(0., highest));
-}
+using PressureBounds = Kokkos::MinMax<double>;
 
-/// The pressure from which the foundation may give way; collective.
-double lowest_bound(const Comm &comm, const contact::ContactNodes &c)
+/// Of the points of all contact sides: from which pressure the foundation may give way, and what no pressure can exceed, maybe infinite;
+/// collective.
+PressureBounds::value_type pressure_bounds(const Comm &comm, const contact::ContactNodes &c)
 {
   const contact::ContactNodes points = c;
-  double lowest = 0;
+  PressureBounds::value_type bounds;
   Kokkos::parallel_reduce(
-      "rpc::adapt::lowest_yield_stress", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, double &least) { least = math::fmin(least, contact::dented_from(points.law(i))); },
-      Kokkos::Min<double>(lowest));
-  lowest = min_all(comm, lowest); // Kokkos' minimum of infinities, or over no points, is DBL_MAX
-  return lowest < std::numeric_limits<double>::max() ? lowest : std::numeric_limits<double>::infinity();
+      "rpc::adapt::pressure_bounds", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, PressureBounds::value_type &of) {
+        of.min_val = math::fmin(of.min_val, contact::dented_from(points.law(i)));
+        of.max_val = math::fmax(of.max_val, contact::largest_bearable(points.law(i)));
+      },
+      PressureBounds(bounds));
+  // Kokkos' minimum of infinities, or over no points, is DBL_MAX, its maximum over no points -DBL_MAX.
+  bounds = {min_all(comm, bounds.min_val), max_all(comm, std::max(0., bounds.max_val))};
+  if (bounds.min_val == std::numeric_limits<double>::max()) bounds.min_val = std::numeric_limits<double>::infinity();
+  return bounds;
 }
 
 } // namespace
@@ -233,8 +229,9 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
   const contact::BetweenNodes &unseen = of.result.between;
   estimate.unseen_squared = DeviceView<double *>("rpc::adapt::unseen_squared", squared.extent(0));
   estimate.seen_from = DeviceView<double *>("rpc::adapt::seen_from", squared.extent(0));
-  estimate.peak.at_bound = highest >= (1 - 1e-12) * highest_bound(mesh.comm(), of.contact);
-  estimate.peak.lowest_bound = lowest_bound(mesh.comm(), of.contact);
+  const auto bounds = pressure_bounds(mesh.comm(), of.contact);
+  estimate.peak.at_bound = highest >= (1 - 1e-12) * bounds.max_val;
+  estimate.peak.lowest_bound = bounds.min_val;
   constexpr int num_sums = 14;
   double sums[num_sums] = {}, peak = 0, spread = 0, drop = 0, kink = 0; // Kokkos' maximum over no facets is -DBL_MAX
   Kokkos::parallel_reduce(
