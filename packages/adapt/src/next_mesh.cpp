@@ -50,7 +50,8 @@ double MeshPlanner::made_per_planned(const double cells, const int dim) const
 }
 
 /// @param eta, target  estimates, of the present mesh and of the last one [J^(1/2)]
-MeshPlanner::Goal MeshPlanner::goal(const double eta, const double target, const int dim)
+/// @param no_better    whether the present mesh is no better than one before
+MeshPlanner::Goal MeshPlanner::goal(const double eta, const double target, const bool no_better, const int dim)
 {
   const bool nested = nests(task_.mesh, task_.adapt);
   const double far = (dim == 2 ? plan_rules.aim : plan_rules.aim_in_space) * target;
@@ -58,7 +59,11 @@ MeshPlanner::Goal MeshPlanner::goal(const double eta, const double target, const
   const double wanted = is_near && nested ? plan_rules.aim_near_nested * target : far;
   const double meshes =
       std::ceil(std::log(eta / wanted) / std::log(double(plan_rules.greatest_reduction))); // in equal steps
-  missed_ = is_near && !nested ? std::clamp(missed_ * eta / planned_, 1., double(plan_rules.greatest_correction)) : 1;
+  // Sizes that ask for too little leave nested cells as they are, or halve others: then they ask for more.
+  if (nested)
+    missed_ = no_better ? missed_ / plan_rules.aim_near_nested : missed_;
+  else
+    missed_ = is_near ? std::clamp(missed_ * eta / planned_, 1., double(plan_rules.greatest_correction)) : 1;
   planned_ = eta * std::pow(wanted / eta, 1 / std::max(1., meshes));
   return {planned_ / missed_, is_near ? plan_rules.growth_near : plan_rules.growth,
           std::max(1, static_cast<int>(meshes)), wanted};
@@ -119,12 +124,8 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
   reason = why_no_other(mesh);
   if (!reason.empty()) return std::nullopt;
   const double eta = std::sqrt(estimate.total()), target = task_.adapt.target * std::sqrt(energy_norm_squared);
-  goal_ = goal(eta, target, mesh.dim());
-  // Sizes that ask for too little leave nested cells as they are, or halve others: then they ask for more.
   const double relative = eta / std::sqrt(energy_norm_squared);
-  if (nests(task_.mesh, task_.adapt) && relative > plan_rules.hardly_less * least_)
-    no_better_ *= plan_rules.aim_near_nested;
-  goal_.bound *= no_better_;
+  goal_ = goal(eta, target, relative > plan_rules.hardly_less * least_, mesh.dim());
   // Where unseen contact is most of the error, errors elsewhere are those of another solution: no cell grows for them.
   if (estimate.misses_contact()) goal_.growth = 1;
   const double dofs = dofs_of(mesh), cells = cells_of(mesh), ratio = made_per_planned(cells, mesh.dim());

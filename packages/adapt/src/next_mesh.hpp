@@ -50,7 +50,7 @@ private:
     int meshes = 0;    ///< to the target, > 0
     double wanted = 0; ///< estimate of the last of them
   };
-  Goal goal(double eta, double target, int dim);
+  Goal goal(double eta, double target, bool no_better, int dim);
   double made_per_planned(double cells, int dim) const;
   mesh::MeshOptions options_for(const Sizes &sizes, const mesh::Mesh &mesh);
   bool nothing_gained(double eta, double target, double dofs, const mesh::Element &element) const;
@@ -58,10 +58,9 @@ private:
 
   const Task &task_;
   Goal goal_;         // of the mesh that was planned last
-  double missed_ = 1; // estimates near the target over those that were planned, multiplied
+  double missed_ = 1; // the next mesh is planned for the goal over this, >= 1: what earlier ones missed of theirs
   double planned_ = std::numeric_limits<double>::infinity(); // estimate that the present mesh was to have
   double predicted_cells_ = 0;                               // of the present mesh; 0: it was not planned
-  double no_better_ = 1;          // share of the goal that nested meshes are planned for, after one that was no better
   bool planned_at_limit_ = false; // the present mesh, for fewer cells than the target asked for
   /// The mesh before the present one, where that was planned at the limit too.
   struct Before {
