@@ -107,7 +107,7 @@ void choose_next_slip(const SmoothedPoints &s, const Vector &u, const ActiveSet 
   const auto slips = choice.slip;
   const auto direction = choice.direction, traction = choice.traction;
   const auto violated = choice.violation;
-  const auto always = choice.always;
+  const auto cannot_stick = choice.cannot_stick;
   const double share = lag_rules.least_held;
   Kokkos::parallel_for(
       "rpc::contact::next_slip", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
@@ -121,7 +121,7 @@ void choose_next_slip(const SmoothedPoints &s, const Vector &u, const ActiveSet 
         SlipBranch branch = next_slip(now.branch(i), turned, now.state(i), next(i), at.slip, row(traction, i),
                                       at.penetration, admissible(p(i), c.law(i)), own(i), bound, f);
         const double held = prescribed_slip(at.slip, NormalAt{c, i}, FreeAt{c.friction, i}, c.dim).length();
-        always(i) =
+        cannot_stick(i) =
             own(i) * held > bound && s.penalty(i) * held > share * friction_bound(admissible(p(i), c.law(i)), f);
         if (branch.state == Slip::stick && own(i) * held > bound)
           branch = slip_instead(now.branch(i), turned, at.slip, row(traction, i),
@@ -267,7 +267,7 @@ void make_room_for_slip(const ContactNodes &c, ActiveSetChoice &choice)
 {
   choice.slip = DeviceView<Slip *>("rpc::contact::next_slip", c.size());
   choice.direction = DeviceView<double **>("rpc::contact::next_slip_direction", c.size(), c.dim);
-  choice.always = DeviceView<bool *>("rpc::contact::always_slips", c.size());
+  choice.cannot_stick = DeviceView<bool *>("rpc::contact::cannot_stick", c.size());
   choice.violation = DeviceView<double *>("rpc::contact::violation", c.size());
   if (choice.traction.extent(0) == 0)
     choice.traction = DeviceView<double **>("rpc::contact::chosen_by_traction", c.size(), c.dim);
@@ -327,7 +327,7 @@ void take_slip(const ActiveSetChoice &choice, const SmoothedPoints &points, cons
   const auto p = choice.pressure;
   const auto slips = choice.slip;
   const auto direction = choice.direction, traction = choice.traction;
-  const auto always = choice.always;
+  const auto cannot_stick = choice.cannot_stick;
   const auto x = device_write(u);
   for_each_point_by_group(
       "rpc::contact::take_slip", s.points, KOKKOS_LAMBDA(const LO i) {
@@ -337,7 +337,7 @@ void take_slip(const ActiveSetChoice &choice, const SmoothedPoints &points, cons
         const bool sticks = branch.state == Slip::stick && to.slip(i) != Slip::stick;
         const double pressure = state(i) == State::open ? 0 : multiplier_of(state(i), p(i), c.law(i));
         to.slip(i) = branch.state;
-        to.always(i) = always(i);
+        to.cannot_stick(i) = cannot_stick(i);
         set_row(to.direction, i, branch.direction);
         set_row(s.multiplier.tangential, i, multiplier_of(branch, row(traction, i), pressure, f));
         s.bound(i) = friction_bound(pressure, f);

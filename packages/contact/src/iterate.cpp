@@ -112,7 +112,7 @@ ActiveSet no_active_set(const ContactNodes &points)
   if (!points.friction.exists()) return active;
   active.slip = DeviceView<Slip *>("rpc::contact::active_slip", points.size());
   active.direction = DeviceView<double **>("rpc::contact::active_slip_direction", points.size(), points.dim);
-  active.always = DeviceView<bool *>("rpc::contact::active_always_slips", points.size());
+  active.cannot_stick = DeviceView<bool *>("rpc::contact::active_cannot_stick", points.size());
   active.linearized_at = DeviceView<double **>("rpc::contact::linearized_at", points.size(), points.dim);
   return active;
 }

@@ -248,7 +248,7 @@ void SmoothedFunctional::take_states(const Vector &u, const ActiveSet &active) c
         const Along a = s.trial_traction(i, at);
         to.slip(i) = slip_state(a, s.bound(i));
         set_row(to.direction, i, a.unit());
-        to.always(i) = false;
+        to.cannot_stick(i) = false;
         set_row(to.linearized_at, i, a);
       });
   Kokkos::fence();

@@ -14,7 +14,7 @@ struct ActiveSetChoice {
   DeviceView<double *> pressure;        ///< (contact nodes) [Pa]
   DeviceView<Slip *> slip = {};         ///< (contact nodes) of friction; empty: there is none
   DeviceView<double **> direction = {}; ///< (contact nodes, dim) where a point slips: h in the plane, g in space
-  DeviceView<bool *> always = {};       ///< (contact nodes) slips since it cannot stick
+  DeviceView<bool *> cannot_stick = {}; ///< (contact nodes) slips: a part of its slip is prescribed
   DeviceView<double *> violation = {};  ///< (contact nodes) of the law by points whose state is to change, else 0 [Pa]
   DeviceView<double **> traction = {};  ///< (contact nodes, dim) along the side that slip was chosen by [Pa]
   GO changes = 0;                       ///< points on all ranks whose state is to change

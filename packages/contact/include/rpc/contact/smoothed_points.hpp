@@ -47,10 +47,10 @@ struct ActiveSet {
   bool chosen = false;          ///< else the states are those of K itself, all open, and say nothing about pressures
   DeviceView<Slip *> slip = {}; ///< (points) of friction; empty: there is none
   DeviceView<double **> direction = {};     ///< (points, dim) where a point slips: h in the plane, g in space
-  DeviceView<bool *> always = {};           ///< (points) slips since it cannot stick
+  DeviceView<bool *> cannot_stick = {};     ///< (points) slips: a part of its slip is prescribed
   DeviceView<double **> linearized_at = {}; ///< (points, dim) lambda_tau + r e where the branches were linearized [Pa]
 
-  KOKKOS_INLINE_FUNCTION SlipBranch branch(const LO i) const { return {slip(i), row(direction, i), always(i)}; }
+  KOKKOS_INLINE_FUNCTION SlipBranch branch(const LO i) const { return {slip(i), row(direction, i), cannot_stick(i)}; }
 };
 
 /// The contact points of a smoothed functional: what its formulas need of each.

@@ -36,7 +36,7 @@ struct Response {
 struct SlipBranch {
   Slip state = Slip::stick;
   Along direction = {};
-  bool always = false; ///< slips since it cannot stick: a part of its slip is prescribed
+  bool cannot_stick = false; ///< it slips, since a part of its slip is prescribed
 };
 
 /// w a m m^T, the block of a stiffness a along m [Pa/m].
@@ -111,7 +111,7 @@ KOKKOS_INLINE_FUNCTION void add_friction(const Motion &at, const Multiplier &mul
 KOKKOS_INLINE_FUNCTION Along trial_traction(const SlipBranch &branch, const Along &multiplier, const double r,
                                             const Along &e)
 {
-  return branch.always ? e.scaled(r) : multiplier.plus(r, e);
+  return branch.cannot_stick ? e.scaled(r) : multiplier.plus(r, e);
 }
 
 /// Traction on the branch of a friction state, whether the law admits it or not: lambda_tau + r e, or s h with s at the pressure p. In the
@@ -153,7 +153,7 @@ add_friction_on_branch(const State state, const SlipBranch &branch, const Motion
   if (branch.state == Slip::stick) return add_traction(w, q, {r, r}, {}, normal, free, dim, response);
   const Along h = dim == 2 ? branch.direction : a.unit();
   const double size = a.length(), s = friction_bound(p, f);
-  const double across = dim == 2 || !(s > 0) ? 0 : (s < size || branch.always ? r * s / size : r);
+  const double across = dim == 2 || !(s > 0) ? 0 : (s < size || branch.cannot_stick ? r * s / size : r);
   add_traction(w, q, {across, 0}, h, normal, free, dim, response);
   if (dim == 3) add_lag(w, across, h, branch.direction, free, dim, response);
   const double slope = friction_slope(p, f) * branch_stiffness(state, r, foundation);
