@@ -69,6 +69,13 @@ std::vector<int> carrying_sides(const Context &context, const HeldPart &held, co
   throw Error(ExitCode::no_solution, "support: " + message);
 }
 
+/// The end of a remedy that begins with "prescribe ". @param motion  "it", "them" or "this motion"
+std::string support_against(const std::string &motion)
+{
+  return "a displacement in \"Dirichlet\" that stops " + motion +
+         ", or give a side in \"Rigid\" a motion or a spring that does.";
+}
+
 [[noreturn]] void refuse_free(const Context &context, const int part, const Motions &free, const fem::Resultant &load)
 {
   std::ostringstream message;
@@ -82,7 +89,7 @@ std::vector<int> carrying_sides(const Context &context, const HeldPart &held, co
       message << ", along which the load is " << context.amount(along / words.size, words);
     first = false;
   }
-  message << ". Prescribe a displacement in \"Dirichlet\" that stops " << (free.size() > 1 ? "them" : "it") << ".";
+  message << ". Prescribe " << support_against(free.size() > 1 ? "them" : "it");
   refuse(message.str());
 }
 
@@ -153,12 +160,12 @@ std::string where_it_presses(const Context &context, const HeldPart &held, const
       message << ". Change the load";
     else
       message << "; " << presses << ". Move the load to where the foundation holds it";
-    message << ", or prescribe a displacement in \"Dirichlet\" that stops this motion.";
+    message << ", or prescribe " << support_against("this motion");
   }
   refuse(message.str());
 }
 
-/// The load is on the edge of what the foundation can do: moved along `motion` the part costs no energy; collective.
+/// The load is the largest that the foundation can bear: a part that moves along `motion` changes no energy; collective.
 [[noreturn]] void refuse_edge(const Context &context, const HeldPart &held, const RigidMotion &motion,
                               const double scale)
 {
@@ -172,8 +179,8 @@ std::string where_it_presses(const Context &context, const HeldPart &held, const
             << ", whose position is then not determined. Lower the load, or raise the yield stress.";
   else
     message << "nothing presses " << name << " on the foundation against a " << words.text()
-            << ": its position is not determined. Apply a load that does, or prescribe a displacement in \"Dirichlet\" "
-               "that stops this motion.";
+            << ": its position is not determined. Apply a load that does, or prescribe "
+            << support_against("this motion");
   refuse(message.str());
 }
 
@@ -222,8 +229,7 @@ void refuse_slide(const Context &context, const HeldPart &held, const ConvexSet 
   else
     message << "the load pushes " << name << " over the foundation with a resultant of " << load << ' ' << words.where
             << "; friction holds at most " << context.amount(low * pushed / words.size, words);
-  message
-      << ". Lower the load, raise the friction, or prescribe a displacement in \"Dirichlet\" that stops this motion.";
+  message << ". Lower the load, raise the friction, or prescribe " << support_against("this motion");
   refuse(message.str());
 }
 
