@@ -14,31 +14,6 @@
 
 namespace rpc::mesh
 {
-namespace
-{
-
-/// For each node those of the same owner that share a cell with it, without itself.
-Lists neighbours(const MeshData &whole, const Lists &cells_at, const std::vector<int> &owner)
-{
-  const int width = whole.element.num_nodes();
-  Lists graph;
-  std::vector<int> seen_by(owner.size(), -1);
-  for (int node = 0; node < whole.num_nodes(); ++node) {
-    seen_by[node] = node;
-    for (const int *cell = cells_at.first(node); cell != cells_at.last(node); ++cell)
-      for (int a = 0; a < width; ++a) {
-        const int other = whole.cells[std::size_t(width) * *cell + a];
-        if (seen_by[other] == node || owner[other] != owner[node]) continue;
-        seen_by[other] = node;
-        graph.value.push_back(other);
-      }
-    graph.begin.push_back(graph.value.size());
-  }
-  return graph;
-}
-
-} // namespace
-
 std::vector<int> ranks_of_cells(const MeshData &whole, const int num_parts, const std::vector<double> &weights)
 {
   const int num_cells = whole.num_cells(), width = whole.element.num_nodes();
@@ -107,8 +82,9 @@ Division divide_by(const MeshData &whole, const int num_ranks, const std::vector
   }
 
   // No edge of the graph leads from rank to rank: one call orders the nodes of each.
-  const std::vector<int> order =
-      given_order.empty() ? reverse_cuthill_mckee(neighbours(whole, cells_at, owner)) : given_order;
+  const std::vector<int> order = given_order.empty()
+                                     ? reverse_cuthill_mckee(node_to_nodes(whole.element, whole.cells, cells_at, owner))
+                                     : given_order;
   std::vector<int> owner_in_order;
   for (const int node : order) owner_in_order.push_back(owner[node]);
   division.nodes = sorted_into_lists(owner_in_order, num_ranks);

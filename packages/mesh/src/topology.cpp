@@ -121,6 +121,24 @@ Lists node_to_cells(const Element &element, const std::vector<int> &cells, const
   return lists;
 }
 
+Lists node_to_nodes(const Element &element, const std::vector<int> &cells, const Lists &cells_at,
+                    const std::vector<int> &owner)
+{
+  const int width = element.num_nodes();
+  Lists lists;
+  std::vector<int> seen_by(owner.size(), -1);
+  for (int node = 0; node < static_cast<int>(owner.size()); ++node) {
+    seen_by[node] = node;
+    for (const int *cell = cells_at.first(node); cell != cells_at.last(node); ++cell)
+      for (int a = 0; a < width; ++a) {
+        const int other = cells[std::size_t(width) * *cell + a];
+        if (owner[other] == owner[node] && std::exchange(seen_by[other], node) != node) lists.value.push_back(other);
+      }
+    lists.begin.push_back(lists.value.size());
+  }
+  return lists;
+}
+
 Topology topology(const Mesh &mesh)
 {
   const auto host = to_host(mesh.cells);

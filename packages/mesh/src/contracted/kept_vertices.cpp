@@ -17,29 +17,12 @@ namespace
 
 using Rank = Features::Rank;
 
-/// Vertices that share a cell with each.
-Lists neighbours_inside(const MeshData &mesh)
-{
-  const Lists cells_at = node_to_cells(mesh.element, mesh.cells, mesh.num_nodes());
-  const int width = mesh.element.num_nodes();
-  Lists lists;
-  std::vector<int> seen_by(mesh.num_nodes(), -1);
-  for (int v = 0; v < mesh.num_nodes(); ++v) {
-    seen_by[v] = v;
-    for (const int *cell = cells_at.first(v); cell != cells_at.last(v); ++cell)
-      for (int k = 0; k < width; ++k) {
-        const int other = mesh.cells[std::size_t(width) * *cell + k];
-        if (std::exchange(seen_by[other], v) != v) lists.value.push_back(other);
-      }
-    lists.begin.push_back(lists.value.size());
-  }
-  return lists;
-}
-
 /// Vertices next to each along what those of a rank lie on: the edges of the boundary, its facets, or the body.
 Lists neighbours(const MeshData &mesh, const Features &features, const Rank rank)
 {
-  if (rank == Rank::inside) return neighbours_inside(mesh);
+  if (rank == Rank::inside)
+    return node_to_nodes(mesh.element, mesh.cells, node_to_cells(mesh.element, mesh.cells, mesh.num_nodes()),
+                         std::vector<int>(mesh.num_nodes(), 0));
   std::vector<int> ends; // two of each edge
   if (rank == Rank::face)
     for (const FeatureFacet &facet : features.facets)

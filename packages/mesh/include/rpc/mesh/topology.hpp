@@ -37,6 +37,10 @@ Entities edges_of(const Element &element, const std::vector<int> &cells);
 
 /// The cells at each node, ascending.
 Lists node_to_cells(const Element &element, const std::vector<int> &cells, int num_nodes);
+/// For each node the others of the same owner that share a cell with it.
+/// @param cells_at  node_to_cells()   @param owner  (nodes)
+Lists node_to_nodes(const Element &element, const std::vector<int> &cells, const Lists &cells_at,
+                    const std::vector<int> &owner);
 
 /// Facets and edges of one rank's cells.
 ///
