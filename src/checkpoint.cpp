@@ -171,17 +171,20 @@ mesh::MeshOptions mesh_of(const io::Checkpoint &file, const std::string &path, c
                     *const size = array_of(file, "sizes_size"), *const kind = array_of(file, "sizes_kind");
   if (!coords || !simplices || !size || !kind) return scene.mesh;
   std::shared_ptr<mesh::SizeField> sizes;
-  int refinements = 0, nested = 0;
-  if (comm.getRank() == 0) { // which has the arrays' values
+  int form[3] = {}; // dimension, how often the mesh by the sizes was refined, whether it is nested
+  on_root(comm, ExitCode::bad_input, [&] { // which has the arrays' values
+    RPC_REQUIRE(
+        kind->size() == 3 && (kind->front() == 2 || kind->front() == 3),
+        "restart: \"" << path
+                      << "\" is damaged or no checkpoint: how its adapted mesh was made is not 3 numbers of which the "
+                         "first is the dimension. Take an older one, or start from the first step.");
+    std::copy(kind->begin(), kind->end(), form);
     sizes = std::make_shared<mesh::SizeField>(
-        mesh::SizeField{*coords, {simplices->begin(), simplices->end()}, *size, static_cast<int>(kind->at(0))});
-    refinements = static_cast<int>(kind->at(1));
-    nested = static_cast<int>(kind->at(2));
-  }
-  Teuchos::broadcast(comm, 0, Teuchos::outArg(refinements));
-  Teuchos::broadcast(comm, 0, Teuchos::outArg(nested));
+        mesh::SizeField{*coords, {simplices->begin(), simplices->end()}, *size, form[0]});
+  });
+  Teuchos::broadcast(comm, 0, 3, form);
   const auto options =
-      nested ? mesh::refined_to_sizes(scene.mesh, sizes) : mesh::with_sizes(scene.mesh, sizes, refinements);
+      form[2] ? mesh::refined_to_sizes(scene.mesh, sizes) : mesh::with_sizes(scene.mesh, sizes, form[1]);
   RPC_REQUIRE(options && scene.adapt.adapts(),
               "restart: \"" << path
                             << "\" is on a mesh that was adapted, and the deck adapts none. Give it "

@@ -241,6 +241,16 @@ class KeptResults(RpcTestCase):
                           "--restart=out/beam_adaptive.checkpoint-000006.e", code=BAD_INPUT)
         self.expect_refusal(result, BAD_INPUT, ["beam_adaptive.checkpoint-000006.e", "was adapted", "Adapt->Target Relative Error"])
 
+    def test_a_checkpoint_whose_adapted_mesh_is_not_described_is_refused(self):
+        shorter = [argument.replace("To=10", "To=0.75") for argument in self.ADAPTED]
+        self.rpc("--input=beam_adaptive.xml", *shorter, "--output=out")
+        (checkpoint,) = (self.folder / "out").glob("*checkpoint*")
+        found = checkpoint.read_bytes()
+        self.assertEqual([found.count(name) for name in (b"sizes_size", b"sizes_kind")], [2, 2])  # of the text, and of Exodus
+        checkpoint.write_bytes(found.replace(b"sizes_size", b"sizes_?").replace(b"sizes_kind", b"sizes_size").replace(b"sizes_?", b"sizes_kind"))
+        result = self.rpc("--input=beam_adaptive.xml", *self.ADAPTED, f"--restart={checkpoint}", code=BAD_INPUT)
+        self.expect_refusal(result, BAD_INPUT, [checkpoint.name, "how its adapted mesh was made", "Take an older one"])
+
     def test_a_signal_leaves_a_checkpoint(self):
         plain = [argument for argument in self.HISTORY if "Checkpoint" not in argument]
         code, text = self.stopped(signal.SIGTERM, 5, plain, "beam")
