@@ -280,6 +280,7 @@ MeshData meshed_geometry(const std::string &where, const GmshOptions &options)
 /// What a file that has a mesh contains. Its text takes much memory, and is gone on return.
 GmshContents contents_of_mesh(const std::string &where, const GmshOptions &options)
 {
+  if (options.contents && !options.contents->elements.empty()) return std::exchange(*options.contents, {});
   const MeshFormat format = format_of(options.file);
   if (format == MeshFormat::msh) return read_msh(where, read_text(where, options.file));
   read_text(where, options.file); // whether it can be opened
@@ -317,7 +318,12 @@ int gmsh_dimension(const GmshOptions &options)
   const std::string where = where_of(options);
   const MeshFormat format = known_format(where, options);
   if (format == MeshFormat::msh) return dimension_of_msh(where, read_text(where, options.file));
-  if (!is_geometry(format)) return contents_of_mesh(where, options).dim;
+  if (!is_geometry(format)) {
+    GmshContents contents = contents_of_mesh(where, options);
+    const int dim = contents.dim;
+    if (options.contents) *options.contents = std::move(contents);
+    return dim;
+  }
   const std::string text = read_text(where, options.file);
   if (format == MeshFormat::geo) check_last_line(where, text);
   GmshRequest request = request_for(options);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/mesh/make_mesh.hpp"
 
+#include "gmsh_contents.hpp"
 #include "mesh_formats.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/on_root.hpp"
@@ -187,6 +188,7 @@ GmshOptions gmsh_options(const Teuchos::ParameterList &list, const std::string &
               "deck: \"Mesh->Size Factor\" must be > 0 and finite, got " << options.size_factor);
   RPC_REQUIRE(options.order >= 0 && options.order <= 2,
               "deck: \"Mesh->Order\" must be 1 or 2, or 0 for the default, got " << options.order);
+  options.contents = std::make_shared<GmshContents>();
   options.refinements = list.get<int>("Refinements");
   RPC_REQUIRE(options.refinements >= 0 && options.refinements <= most_refinements,
               "deck: \"Mesh->Refinements\" must be 0 to " << most_refinements << ", got " << options.refinements);

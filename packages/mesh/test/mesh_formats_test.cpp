@@ -3,14 +3,17 @@
 
 #include "expect_error.hpp"
 #include "msh_text.hpp"
-#include "rpc/mesh/gmsh.hpp"
+#include "rpc/core/parameters.hpp"
+#include "rpc/mesh/make_mesh.hpp"
 #include "rpc/mesh/mesh_summary.hpp"
 #include "same_mesh.hpp"
 #include "scratch_file.hpp"
 
+#include <Tpetra_Core.hpp>
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <memory>
 
 namespace mesh_formats_test
 {
@@ -60,6 +63,19 @@ TEST(ExodusMesh, BlocksAndSetsAreThoseOfTheSameMsh)
     expect_same_mesh(mesh, expected, name);
     expect_noted(mesh, {"set \"floor\"", "2 whole facets", "a side"});
   }
+}
+
+TEST(ExodusMesh, AFileIsReadOnceForItsDimensionAndItsMesh)
+{
+  std::ifstream in(path_of_data("two_squares.exo"), std::ios::binary);
+  auto file = std::make_unique<ScratchFile>("mesh.exo", std::string{std::istreambuf_iterator<char>(in), {}});
+  Teuchos::ParameterList list("Mesh");
+  list.set("Type", "gmsh").set("File", file->path());
+  rpc::validate(list, rpc::mesh::valid_parameters());
+  const auto options = rpc::mesh::mesh_options(list, "", *Tpetra::getDefaultComm());
+  EXPECT_EQ(rpc::mesh::dimension(options, *Tpetra::getDefaultComm()), 2);
+  file.reset(); // it is gone from the disk
+  expect_same_mesh(read_gmsh(std::get<GmshOptions>(options)), read_data("two_squares.exo"), "read once");
 }
 
 TEST(ExodusMesh, DamagedFilesAreRefused)

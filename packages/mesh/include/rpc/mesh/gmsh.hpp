@@ -26,6 +26,8 @@ struct SidePlace {
   std::vector<double> box;                   ///< lower and upper corner [m]
 };
 
+struct GmshContents;
+
 /// A mesh that gmsh makes or made, or that of another file.
 struct GmshOptions {
   std::string file; ///< a geometry that gmsh meshes (.geo, .step, ...), or a mesh (.msh, .e, ...), see mesh_formats.hpp
@@ -44,6 +46,8 @@ struct GmshOptions {
   double size = 0;                   ///< of the cells of a STEP, IGES, BREP or STL [m]; 0: a tenth of the body
   std::vector<SidePlace> sides = {}; ///< besides those that the file has
   bool list_surfaces = false;        ///< the mesh is to have its geometry
+  /// Where gmsh_dimension() keeps what it has read of a file, for the first read_gmsh(); null: the file is read again.
+  std::shared_ptr<GmshContents> contents = nullptr;
   std::string length_unit = {}; ///< of a deck that names it; empty: a note tells what a file of shapes is taken for
 
   bool needs_geometry() const { return refinements > 0 || nested; } ///< for new nodes on curved boundaries
