@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/io/rough_surface.hpp"
 
+#include "rpc/core/byte_order.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/parameters.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <cstring>
 #include <random>
 #include <sstream>
 
@@ -111,14 +111,6 @@ void scale(Waves &waves, const RoughSurfaceOptions &o)
 void append(std::string &text, const void *const data, const std::size_t size)
 {
   text.append(static_cast<const char *>(data), size);
-}
-
-bool is_little_endian()
-{
-  const std::uint16_t one = 1;
-  unsigned char first = 0;
-  std::memcpy(&first, &one, 1);
-  return first == 1;
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "height_formats.hpp"
+#include "rpc/core/byte_order.hpp"
 #include "rpc/core/error.hpp"
 
 #include <algorithm>
@@ -32,14 +33,6 @@ double npy_number(const char kind, const int size, const unsigned char *const by
          : size == 2 ? as(std::uint16_t())
          : size == 4 ? as(std::uint32_t())
                      : as(std::uint64_t());
-}
-
-bool machine_is_little()
-{
-  const std::uint16_t one = 1;
-  unsigned char first = 0;
-  std::memcpy(&first, &one, 1);
-  return first == 1;
 }
 
 /// What stands behind 'name': in a header, up to a comma or the end.
@@ -96,7 +89,7 @@ HeightTable read_npy(const HeightFile &file)
   table.rows = static_cast<int>(shape[0]);
   table.columns = static_cast<int>(shape[1]);
   table.height.resize(count);
-  const bool turns = size > 1 && ((type[0] == '<' && !machine_is_little()) || (type[0] == '>' && machine_is_little()));
+  const bool turns = size > 1 && ((type[0] == '<' && !is_little_endian()) || (type[0] == '>' && is_little_endian()));
   for (std::size_t k = 0; k < count; ++k) {
     unsigned char number_bytes[8];
     std::memcpy(number_bytes, bytes.data() + begin + length + k * size, size);
