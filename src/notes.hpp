@@ -19,7 +19,7 @@ public:
   explicit Notes(std::ostream &console) : console_(console) {}
   /// @param note  empty: none
   void add(const std::string &note);
-  /// The same of what is as most decks mean it: a check calls nothing wrong for its sake.
+  /// A note on a deck that most likely means what it says: --check does not call such a deck wrong.
   void add_harmless(const std::string &note);
   const std::vector<std::string> &all() const { return all_; }
   /// Those that a user is to read before a run.

@@ -32,7 +32,7 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
 /// @throws rpc::Error as solve()
 std::string check(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console, Checkpoints &checkpoints);
 
-/// What the user hears of a failure in a later load step: when, why, and what is left.
+/// The message on a failure in a later load step: its time, its reason, and which results there are.
 Error failure_of(const Solution &solution);
 
 } // namespace rpc

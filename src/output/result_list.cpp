@@ -130,7 +130,7 @@ void mark_nothing(std::vector<Result> &all, const double max_displacement, const
   }
 }
 
-/// The estimates that the console shows on a line of their own, as shares of the norms of what they are errors of.
+/// The estimates that the console shows on a line of their own, relative to the norms of the estimated quantities.
 void add_estimates(std::vector<Result> &all, const Scene &scene, const Solution &s, const adapt::ObservedErrors &errors)
 {
   if (!s.estimate) return;

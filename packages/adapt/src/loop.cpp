@@ -25,7 +25,7 @@ double estimated_energy(const Solution &s)
   return s.energy_norm_squared + s.estimate->unseen();
 }
 
-/// Of what is no solution.
+/// The estimate of a displacement that is no solution.
 ErrorEstimate unknown_estimate()
 {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();

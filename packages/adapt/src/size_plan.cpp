@@ -114,7 +114,7 @@ Prediction predict(const EstimatedMesh &mesh, const std::vector<char> &at_singul
   return p;
 }
 
-/// The greatest level that keeps the bound on the squared error, or a greater one that keeps to so many cells.
+/// The greatest level that keeps the bound on the squared error, or a greater one that keeps the bound on the number of cells.
 double level_for(const EstimatedMesh &mesh, const std::vector<char> &at_singularity, const SizeRequest &request)
 {
   const double most = *std::max_element(mesh.squared.begin(), mesh.squared.end());

@@ -13,7 +13,7 @@ namespace
 
 constexpr int most_at_once = 8; // as many sums fit into the registers of a thread
 
-// A thread of a host keeps its sums in registers for so many rows; those of a GPU share rows one by one, so that they read side by side.
+// Rows for which a thread of a host keeps its sums in registers; threads of a GPU take one row each, so that they read side by side.
 constexpr LO rows_at_once = on_gpu ? 1 : 1024;
 
 template <int Count>

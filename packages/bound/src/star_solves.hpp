@@ -15,7 +15,7 @@ public:
   /// Factors the energies of all stars.
   StarSolves(const CellInput &in, const BoundaryTractions &boundary, const CellForms &forms,
              const FacetExchange &exchange);
-  /// z <- sum over the stars of what least energy answers to the derivative g with.
+  /// z <- sum over the stars of the minimizers of their energy for the derivative g.
   /// Collective.
   void apply(const Tractions &g, const Tractions &z) const;
 

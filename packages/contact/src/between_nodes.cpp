@@ -28,7 +28,7 @@ struct Density {
   static constexpr int fewest_parts = 4;
   /// On those sides facets are skipped whose distance from the foundation exceeds this multiple of the variation of penetration within them.
   static constexpr double reach = 2;
-  /// Parts of faces in space in which a search by bounds looks for what the samples miss, of a side: some 1 microsecond each.
+  /// Parts of a side's faces in space in which branch and bound looks for contact between samples: some 1 microsecond each.
   static constexpr int searched = 1 << 15;
   /// Of a surface that is given at places of its own: samples for each of their distances, of a side at most, and parts of an edge at most.
   static constexpr double for_detail = 2, of_detail = 1 << 20;
@@ -258,7 +258,7 @@ int parts_of(const mesh::Element &facet, const GO num_facets)
   return std::max(Density::fewest_parts, static_cast<int>(std::ceil(std::pow(wanted / facets, 1. / facet.dim))));
 }
 
-/// The same for a surface that is given at places of its own: so many that none of it is missed, as far as that is affordable.
+/// The same for a surface that is given at places of its own: as fine as these, up to the limits of Density.
 /// @param longest  facet of the side [m]
 int parts_for(const SurfaceDetail &detail, const mesh::Element &facet, const GO num_facets, const double longest)
 {

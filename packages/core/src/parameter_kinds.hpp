@@ -92,7 +92,7 @@ inline std::string type_name(const ParameterEntry &entry)
   return entry.getAny(false).typeName();
 }
 
-/// A default as a deck would have it.
+/// A default as a deck writes it.
 inline std::string text_of(const ParameterEntry &entry)
 {
   if (entry.isType<bool>()) return Teuchos::getValue<bool>(entry) ? "true" : "false";

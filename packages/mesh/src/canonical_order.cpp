@@ -49,7 +49,7 @@ CanonicalOrder::CanonicalOrder(const RCP<const Comm> &comm, const Ids &ids, cons
   }
   piece_sizes_ = gathered_by_root(*comm, sizes);
 
-  // All ids there are so many, and none twice: each is there.
+  // There are as many ids as places, and none twice: so each is there.
   for (GO piece = 0; piece < num_pieces(); ++piece) {
     const auto mine = places_in(piece);
     const auto places = gathered_by_root(*comm, std::vector<int>(mine.begin(), mine.end()));

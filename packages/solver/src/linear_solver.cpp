@@ -321,7 +321,7 @@ bool LinearSolver::Impl::goes_on(const Outcome outcome, const std::string &reaso
   }
   if (is_sparse()) return false; // the matrix is singular, or nearly so
   if (outcome == Outcome::broken) {
-    // An active set may leave the body unheld, or coarse meshes miss what the matrix tells: the next one shows.
+    // Either the active set leaves the body unheld, or the coarse meshes do not represent H: the next candidate tells.
     if (now.kind == Kind::mixed) return leave(now, State::rests, reason);
     if (now.kind == Kind::meshes && !met_singular) return leave(now, State::left, reason);
     if (stands_in_for) come_back(*stands_in_for);

@@ -17,7 +17,7 @@ namespace rpc::adapt
 
 using ReadColumns = decltype(std::declval<const MultiVector &>().getLocalViewDevice(Tpetra::Access::ReadOnly));
 
-// Columns of what a side's facets read at their nodes; those from the traction along the side on only where there is friction.
+// Columns of the values that a side's facets read at their nodes; `traction` and later ones only where there is friction.
 enum Column {
   pressure,
   penetration,
@@ -49,7 +49,7 @@ struct ContactTerms {
   double highest;               // pressure                     [Pa]      in
   DeviceView<double *> squared; // (facets), of owned cells    [J]       out
 
-  // A gap that grows as at the end of a smooth contact stays below so many times the strain at the peak times the size of a facet: its
+  // A gap that grows as at the end of a smooth contact stays below this factor times the strain at the peak times the size of a facet: its
   // faces in space are longer than the root of their area, and their vertices have no weight.
   static constexpr double smooth_gap = 1, smooth_gap_in_space = 4;
 

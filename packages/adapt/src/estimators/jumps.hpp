@@ -10,7 +10,7 @@ namespace rpc::adapt
 /// What jumps between the nodes of a facet leave open, over the facets of a side.                    doc/theory.md (10.7b)
 struct Jumps {
   ContactTerms terms; // in
-  // Of what jumps, over its largest value on the facet: see ContactTerms::state_of().
+  // Difference of a quantity that jumps, over its largest value on the facet: see ContactTerms::state_of().
   static constexpr double jump = 0.1;
   // Of the largest pressure: tractions along the side that jump by less make no singularity that would be seen.
   static constexpr double seen = 0.05;

@@ -287,7 +287,7 @@ private:
   const std::vector<double> &moved_, &along_;
 };
 
-/// Newton's method with exact steps, so many at most. @param x  from there   @param now  the states at its end, where it settles
+/// At most `most` steps of Newton's method with exact step lengths. @param[in,out] x  start, end   @param now  the states where it has converged
 CoarseModel::Ends CoarseModel::follow_newton(const int most, Unknowns &x, ModelStates &now)
 {
   const std::size_t n = data_.size();

@@ -193,7 +193,7 @@ Prediction predict(const Step &step, Iterate &iterate, Vector &u, const Starts &
 
 // Solve: a loop for each minimization, whose steps NOX makes: those of the active-set iteration, then Newton's ------------------
 
-/// Iterative refinement: a solve for what is out of balance at the origin, below Newton's tolerance. Bodies that bend move far for it.
+/// Iterative refinement: a solve for the residual at the origin, below Newton's tolerance, which moves a body that bends far.
 /// @return the number of solves
 int refine(const Iterate &iterate, Vector &u, SolverState &state)
 {
@@ -205,8 +205,8 @@ int refine(const Iterate &iterate, Vector &u, SolverState &state)
   return 1;
 }
 
-/// Where friction's states were not confirmed: the coupled choices once more from where the last Tresca problem led; if these do not
-/// settle soon, the Tresca problem with the next bounds. (12.12)
+/// Where friction's states were not confirmed: coupled active-set updates once more, from the end of the last Tresca problem; if these do
+/// not converge within a few steps, the Tresca problem with the next bounds. (12.12)
 Minimization
 minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options, const int iteration,
                          const LastMinimum &last,
@@ -216,8 +216,8 @@ minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options
   if (solver::takes_loop(options.newton)) {
     const Vector start(u, Teuchos::Copy);
     const Iterate::Dual dual = iterate.dual();
-    // With pressures for multipliers r v counts twice, and v may turn its sign at each update. Choices settle from the multipliers before as a
-    // rule, and at times only from the pressures: in turn.
+    // With pressures for multipliers r v counts twice, and v may turn its sign at each update. Active sets converge from the multipliers before
+    // as a rule, and at times only from the pressures: in turn.
     if (!last.confirmed && iteration % 2 == 0) iterate.take_dual(last.dual);
     ActiveSetLoop choices(iterate, active_set_tolerances(options), ActiveSetLoop::Then::nothing);
     const auto tried = run(std::ref(choices), most);

@@ -38,8 +38,8 @@ double expected_of_mixed_form(const mesh::Mesh &mesh, const double nu)
          (1 + linear_rules.cost_of_step * solver::degree_for_pressures(1 / (1 - 2 * nu)));
 }
 
-/// Of what rough solves may leave: pressures err by more than displacements do where a body is nearly incompressible, and states are chosen
-/// by them.                                                                                                       (5.9b)
+/// The share of their tolerances that inexact solves get: in a nearly incompressible body pressures, which choose states, err by more than
+/// displacements do.                                                                                                       (5.9b)
 ///
 ///     ((1 - 2 nu) / 0.002)^(1/2),  1 at most
 double rough_part(const double nu)

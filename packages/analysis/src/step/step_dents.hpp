@@ -15,7 +15,7 @@ namespace rpc::analysis
 void remember_dents(const Problem &problem, const std::vector<contact::ContactOptions> &sides,
                     const contact::ContactNodes &points, const Memory *before, StepSolution &s, Memory &memory);
 
-/// Where a step is expected to lead from a displacement: along with the mean change of what is prescribed. Collective.
+/// The predicted displacement of a step: u and the mean change of what is prescribed. Collective.
 /// @param u  (owned dofs) [m]
 Vector moved_along(const Problem &problem, double t, const Vector &u);
 

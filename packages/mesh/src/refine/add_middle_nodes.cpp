@@ -44,7 +44,7 @@ std::vector<int> cells_by_ids(const LocalMesh &mesh)
   return order;
 }
 
-/// Where cells have places of their own for what they share, the first by cells_by_ids() tells: last digits may differ between them.
+/// The place of a node that several cells share is that of the first one by cells_by_ids(): cells differ in the last digits.
 void add_places(const LocalMesh &mesh, const Middles &middles, const NewPlaces &place, const std::vector<int> &cells,
                 std::vector<double> &coords)
 {

@@ -23,7 +23,7 @@ double num_entries(const StiffnessOperator &K)
   return K.dofs_per_node() * K.dofs_per_node() * sum_all(*K.getDomainMap()->getComm(), mine);
 }
 
-/// Of what takes a core so long [s]: on all ranks or their GPUs, while factors are made on a host.
+/// The time on all ranks or their GPUs of work that takes one core `seconds` [s]; factors are made on a host.
 double with_all_ranks(const StiffnessOperator &K, const double seconds)
 {
   const double on_host = seconds / K.getDomainMap()->getComm()->getSize();

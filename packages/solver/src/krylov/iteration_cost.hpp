@@ -8,8 +8,8 @@ namespace rpc::solver
 
 /// What a CG iteration with multigrid takes [s], by constants of one machine: a choice by them is the same in every run.
 struct IterationSeconds {
-  double counted = 0;  ///< as it counts against the time of a factor, (4.10): less than it takes where rows of K repeat
-  double measured = 0; ///< within half of what it takes
+  double counted = 0;     ///< what decisions for a factor use, (4.10): less than the true time where rows of K repeat
+  double measured = 0;    ///< the true time, within half of it
   double on_one_rank = 0; ///< measured, times the number of ranks
 };
 

@@ -27,8 +27,8 @@ namespace rpc::solver
 namespace
 {
 
-/// Methods that a deck may choose. NOX's other directions want the transpose or the inverse of a Jacobian, or creep without a
-/// preconditioner; its other line searches want vectors, which no deck has.
+/// Methods that a deck may choose. NOX's other directions need the transpose or the inverse of a Jacobian, or converge slowly
+/// without a preconditioner; its other line searches need vectors, which no deck has.
 constexpr std::array directions{"Active Set", "Sweep", "Newton"};
 constexpr std::array line_searches{"Exact", "Full Step", "Backtrack", "Polynomial", "More'-Thuente", "NonlinearCG"};
 

@@ -141,7 +141,7 @@ void Algebraic::learn(const int iterations, const double residual, double)
                excess(-std::log10(linear_rules.full_tolerance)) > linear_rules.setup_in_iterations;
 }
 
-/// CG iterations that a solve of so many digits would save right after a set-up.
+/// CG iterations that a solve of this many digits would save right after a set-up.
 double Algebraic::excess(const double digits) const
 {
   return usual_iterations_ > 0 ? (iterations_per_digit_ - usual_iterations_) * digits : 0;

@@ -13,8 +13,8 @@ namespace rpc::solver
 
 /// The Cholesky factor of H itself. Of an update that is not symmetric it takes the symmetric part.
 ///
-/// A sparse factor, for what multigrid does badly, follows changes of states by low-rank updates, (4.11), which are exact; where so many
-/// nodes have changed that these would take longer, it is made anew. That of few unknowns is made anew for each choice of states.
+/// A sparse factor, for matrices on which multigrid converges slowly. Low-rank updates (4.11), which are exact, follow changes of states; where
+/// they would take longer, the factor is made anew. That of few unknowns is made anew for each active set.
 class Factor : public Preconditioner
 {
 public:

@@ -34,7 +34,7 @@ bool hardly_finer(const std::vector<double> &eta);
 bool grows_without_limit(const std::vector<double> &value, const std::vector<double> &eta, double resolved);
 
 /// Whether the last change is larger than the one before it, or half of it where the estimate has fallen by more than half:
-/// then the sequence does not settle, and nothing bounds its error. A change up to `resolved` is no matter.        (10.8)
+/// then the sequence does not converge visibly, and nothing bounds its error. Changes up to `resolved` do not count.        (10.8)
 bool unsettled(const std::vector<double> &change, const std::vector<double> &eta, double resolved);
 
 /// The larger of the contact force and the resultant of the loads, which balances it and the reactions [N], in 2D per m. (10.7a)

@@ -29,8 +29,8 @@ public:
                                             const fem::Discretization &fine, const contact::Iterate &iterate,
                                             double solve_seconds);
 
-  /// The next choice, at the minimum for the present active set. Nothing where the model finds none, or where choices make no headway; then it
-  /// is not to be asked again. Collective.
+  /// The next active set, at the minimum for the present one. Nothing where the model does not converge, or active sets make no progress; then
+  /// it is not to be asked again. Collective.
   /// @param present  what pressures choose there, Iterate::choose_active_set
   std::optional<contact::ActiveSetChoice> choose(const contact::Iterate &iterate,
                                                  const contact::ActiveSetChoice &present, const Vector &u);

@@ -44,7 +44,7 @@ public:
   /// @param data    (points)
   CoarseModel(int size, const solver::SymmetricEntries &K, solver::SparseColumns points, std::vector<ModelPoint> data);
 
-  /// Whether each of its factors, of which a choice takes some, is cheap. Without that nothing below may be asked.
+  /// Whether its factors, of which a choice takes several, are cheap. A precondition of all functions below.
   /// @param solve_seconds  what a linear solve of the fine mesh takes on one rank
   bool is_cheap(double solve_seconds) const;
 

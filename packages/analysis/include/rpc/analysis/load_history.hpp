@@ -20,9 +20,9 @@ namespace rpc::analysis
 /// The deck's `Steps`.
 struct StepsOptions {
   std::vector<double> times; ///< rising; empty: one step, at the deck's `Time`
-  int write_every = 1;       ///< every so many of the times one goes into the results, and the last; > 0
+  int write_every = 1;       ///< results have every n-th of the times, and the last; > 0
   int max_halvings = 6;      ///< of a step that does not converge, >= 0
-  int checkpoint_every = 0;  ///< a checkpoint after every so many steps; 0: none
+  int checkpoint_every = 0;  ///< a checkpoint after every n-th step; 0: none
   int balance_halvings = 20; ///< of a step for its energy balance, >= 0
   /// A step whose energy balance is off by more than this share of the energies is halved, > 0.
   double energy_tolerance = std::numeric_limits<double>::infinity();

@@ -47,7 +47,7 @@ Memory interpolated(const Memory &memory, const Operator &interpolation, const f
 
 /// What is remembered as a state to start from.
 contact::ContactState state_of(const contact::ContactNodes &points, const Memory &memory);
-/// Where two steps lead by a later time, linear in t.
+/// Linear extrapolation of two steps to a later time.
 contact::ContactState extrapolated(const contact::ContactNodes &points, const Memory &before, const Memory &last,
                                    double time);
 

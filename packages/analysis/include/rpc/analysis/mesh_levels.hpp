@@ -19,11 +19,11 @@ double largest_ratio(const fem::Discretization &d, const fem::Materials &materia
 /// Whether some block has a Poisson's ratio from which bodies have solvers of their own, by `LinearRules`, outside plane stress.    (4.13)
 bool is_nearly_incompressible(const fem::Discretization &d, const fem::Materials &materials);
 
-/// Levels of multigrid on the meshes that a mesh leads to, down to a few hundred unknowns; the mesh itself where it leads to none. Collective.
+/// Levels of multigrid: a mesh and its coarser meshes, down to a few hundred unknowns; a single level where there is no coarser one. Collective.
 /// @param prescribed  (overlap dofs) 1 where the displacement of the finest mesh is prescribed
 solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, const DeviceView<char *> &prescribed);
 
-/// The same for when they are needed: then coarser meshes are forgotten where nobody else needs them.
+/// The same, made when the solver first asks for them; coarser meshes that nothing else holds are then freed.
 solver::MakeMeshLevels make_mesh_levels(std::shared_ptr<const NestedMesh> finest, const Model &model,
                                         const DeviceView<char *> &prescribed);
 

@@ -34,9 +34,9 @@ struct StepOptions {
   solver::NewtonOptions newton;
   PredictionOptions prediction;
   bool from_rest =
-      true; ///< where friction's states do not settle, the step is tried once more from the last of the given starts
+      true; ///< where friction's states do not converge, the step is tried once more from the last of the given starts
   bool low_penalties =
-      false; ///< where friction's states do not settle, the step is tried once more with low penalties (12.12a)
+      false; ///< where friction's states do not converge, the step is tried once more with low penalties (12.12a)
   bool looks_between_nodes = true; ///< for contact that no node has (3.15): of users' meshes, not of those that predict
 };
 
@@ -99,13 +99,13 @@ struct StepSolution {
 
   solver::LinearSolverCounts linear; ///< of this step
   FoundBy found_by = FoundBy::choices;
-  int line_search_steps = 0;                        ///< Newton's, where the active-set iteration was not enough
-  int coarse_choices = 0;                           ///< steps to states that a coarser mesh chose
-  std::size_t start = 0;                            ///< which of the given states it has started from, if one of them
-  bool from_rest = false;                           ///< friction's states did not settle, and did from the last of them
-  GO raised_penalties = 0;                          ///< contact points whose penalty was too weak for friction
-  std::vector<LevelWork> levels;                    ///< coarser meshes that predicted the solution, from the coarsest
-  std::string not_predicted;                        ///< why no coarser mesh did; empty if one did
+  int line_search_steps = 0;     ///< Newton's, where the active-set iteration was not enough
+  int coarse_choices = 0;        ///< steps to states that a coarser mesh chose
+  std::size_t start = 0;         ///< which of the given states it has started from, if one of them
+  bool from_rest = false;        ///< friction's states converged from the last of the given starts only
+  GO raised_penalties = 0;       ///< contact points whose penalty was too weak for friction
+  std::vector<LevelWork> levels; ///< coarser meshes that predicted the solution, from the coarsest
+  std::string not_predicted;     ///< why no coarser mesh did; empty if one did
   double prediction_seconds = 0, solve_seconds = 0; ///< solve: without set-ups of multigrid
 };
 

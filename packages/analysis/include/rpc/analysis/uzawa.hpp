@@ -41,7 +41,7 @@ struct Minimization {
   int line_search_steps = 0;         ///< of the steps, those of Newton's with its line search
   int coarse_choices = 0;            ///< steps to states that a coarser mesh chose
   bool bounds_follow =
-      false; ///< friction's bounds were given: they follow the pressures from one iteration to the next
+      false; ///< friction's bounds were those of the iteration before: Coulomb's law by Tresca problems
   FoundBy found_by = FoundBy::choices;
 };
 

@@ -30,7 +30,7 @@ double energy(double elastic, const ContactNodes &points, const ContactState &st
 double energy_at(double elastic, const ContactNodes &points, const Multipliers &multiplier, const RCP<const Vector> &u);
 
 /// Largest violation of the laws of contact and friction by (u, lambda), dimensionless: of w = 0 in paper (7).  (5.3), (12.6)
-/// @param roundings  so many times what rounding may make of v and e counts as none: 1 or 0                       (12.7a)
+/// @param roundings  v and e within this many times their rounding bound count as 0: 1 or 0                       (12.7a)
 double contact_law_residual(const ContactNodes &points, const ContactState &state, double roundings = 0);
 
 ContactEnergy contact_energy(const ContactNodes &points, const ContactState &state);

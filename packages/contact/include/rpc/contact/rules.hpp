@@ -33,14 +33,13 @@ struct InteriorRules {
                          "doc/theory.md (5.19a)"};
   Rule<double> range{10, "interior.range", "factor within which a corrector leaves products as they are [-]; off: 1e9",
                      "doc/theory.md (5.19a)"};
-  // Short steps on end tell that points start with a pressure far below what they will bear, as where the foundation bends the body and not
-  // the load: the path is joined anew, with more. A few steps are short on any path.
+  // Several short steps in a row tell that points start with a pressure far below what they will bear, as where the foundation bends the body
+  // and not the load: the path restarts with a larger pressure. A few steps are short on any path.
   Rule<double> short_step{0.25, "interior.short_step", "length of a short step [-]", "doc/theory.md (5.16)"};
   Rule<int> many_short_steps{3, "interior.many_short_steps",
-                             "short steps on end before the path is joined anew [-]; off: 1e9", "doc/theory.md (5.16)"};
+                             "short steps in a row before the path restarts [-]; off: 1e9", "doc/theory.md (5.16)"};
   Rule<double> more_pressure{100, "interior.more_pressure",
-                             "factor of the pressure where the path is joined anew [-]; off: 1",
-                             "doc/theory.md (5.16)"};
+                             "factor of the pressure where the path restarts [-]; off: 1", "doc/theory.md (5.16)"};
 };
 inline constexpr_rules InteriorRules interior_rules;
 

@@ -10,7 +10,7 @@
 namespace rpc
 {
 
-/// Number of unknowns of so many nodes.
+/// Number of unknowns of `num_nodes` nodes.
 template <class Ordinal>
 KOKKOS_INLINE_FUNCTION constexpr Ordinal num_dofs(const int dim, const Ordinal num_nodes)
 {

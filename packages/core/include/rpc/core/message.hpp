@@ -14,7 +14,7 @@ std::string for_terminal(std::string message);
 /// Whether an exception says that memory ran out; Kokkos has a runtime_error of its own for it.
 bool is_out_of_memory(const std::exception &error);
 
-/// For handlers of what all ranks throw alike: throws the exception on if memory ran out, for the other ranks have not met that.
+/// For handlers of exceptions that all ranks throw: rethrows one that memory ran out, which the other ranks have not thrown.
 /// @param error  the exception that is being handled
 void pass_on_out_of_memory(const std::exception &error);
 

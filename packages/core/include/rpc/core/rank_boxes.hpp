@@ -10,8 +10,8 @@
 namespace rpc
 {
 
-/// The boxes of what each rank has, known to all ranks: a tree that tells which ranks to ask about a place without looking at the
-/// boxes one by one.
+/// The boxes around the cells or facets of each rank, known to all ranks: a tree that finds the ranks whose boxes contain a place
+/// without a loop over all of them.
 class RankBoxes
 {
 public:

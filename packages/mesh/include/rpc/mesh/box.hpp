@@ -66,8 +66,8 @@ inline bool periodic(const BoxOptions &options)
 /// The longest node distance over the shortest one.
 double stretch(const BoxOptions &options);
 
-/// The same box in as many blocks as there are ranks, or in fewer, so that each has at least so many nodes on average; in one where it has
-/// not that many.
+/// The same box in as many blocks as there are ranks, or in fewer, so that each has at least `least_nodes` nodes on average; in one block if the
+/// box has fewer.
 BoxOptions divided(BoxOptions options, int num_ranks, GO least_nodes);
 
 /// The direction in which a box is one cell of order 1 and thinner than 1.7 times the shortest distance of nodes in the others; the

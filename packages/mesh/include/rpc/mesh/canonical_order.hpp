@@ -13,7 +13,7 @@ namespace rpc::mesh
 
 /// Takes data of entities that each have one owner to rank 0, ordered by their rank-independent id, and back.
 ///
-/// A piece of ids travels at a time, so that rank 0 holds no more than a piece of what is not its own.
+/// One piece of the ids travels at a time, so that rank 0 holds at most one piece of other ranks' values.
 class CanonicalOrder
 {
 public:

@@ -29,7 +29,7 @@ public:
   virtual Update update(double slight) = 0;
   /// What part of the contact stiffness may change before update() is called: until then the solver is that of earlier states.
   virtual double most_change() const { return 0; }
-  /// About what update() takes, where it may be put off while CG takes less time for what it has missed [s]; 0: it may not.
+  /// About the time of update() [s], which may wait while CG takes less time for the changes that it has not taken in; 0: it may not wait.
   virtual double seconds_of_update() const { return 0; }
   /// x <- about A^-1 b, by a symmetric positive definite operator; collective.
   virtual void apply(const Vector &b, Vector &x) const = 0;

@@ -26,7 +26,7 @@ public:
   virtual Prepared prepare(double tolerance) = 0;
   /// Drops what is set up: the next prepare() starts from nothing.
   virtual void forget() = 0;
-  /// After a solve, of its iterations and of what they have left, |r|/|b|: may tell that it pays to bring B closer to H.
+  /// Called after a solve with its iterations and the residual |r|/|b| at its end: B may decide to be set up anew for H.
   virtual void learn(int /*iterations*/, double /*residual*/, double /*seconds_of_iteration*/) {}
   /// Where B has followed changes of H, or reuses parts of an earlier B, these may be to blame for a solve that went badly: the next
   /// prepare() does without. @return whether that makes another B

@@ -55,7 +55,7 @@ public:
   /// @param comm     of several ranks only where can_be_shared is true
   /// @param size     of the matrix
   /// @param entries  of this rank; their values are not read, and all ranks' entries add up
-  /// @param dofs_per_node  so many unknowns, from one divisible by it, have the same neighbours, so that nodes can be ordered; 1 where
+  /// @param dofs_per_node  n: the unknowns n k to n k + n - 1 have the same neighbours, so that nodes can be ordered for them; 1 where
   ///                 nothing is known
   static std::unique_ptr<SparseFactor> analyse(const RCP<const Comm> &comm, int size, const SymmetricEntries &entries,
                                                int dofs_per_node);
