@@ -2,6 +2,7 @@
 #include "gmsh_wire.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -35,43 +36,91 @@ bool send_message(const int socket, const Kind kind, const void *const data, con
   }
 }
 
+/// What a struct has, one part after the other, to be packed or unpacked.
+template <class Sizes, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Sizes>, SizeField>, int> = 0>
+void each_part(Sizes &sizes, Each &each)
+{
+  each(sizes.coords, sizes.simplices, sizes.size, sizes.dim);
+}
+
+template <class Request, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Request>, GmshRequest>, int> = 0>
+void each_part(Request &r, Each &each)
+{
+  each(r.folder, r.file, r.box_dim, r.lower, r.upper, r.quadrilaterals, r.size_factor, r.size, r.order, r.attempt,
+       r.straight_where_bent, r.sizes, r.dimension_only, r.geometry, r.near_tags, r.near_coords);
+}
+
+template <class Group, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Group>, GmshGroup>, int> = 0>
+void each_part(Group &group, Each &each)
+{
+  each(group.dim, group.tag, group.name);
+}
+
+template <class Elements, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Elements>, GmshElements>, int> = 0>
+void each_part(Elements &elements, Each &each)
+{
+  each(elements.group, elements.type, elements.tags, elements.nodes);
+}
+
+template <class Boundary, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Boundary>, GmshBoundary>, int> = 0>
+void each_part(Boundary &boundary, Each &each)
+{
+  auto &shape = boundary.shape;
+  each(shape.kind, shape.tag, shape.point, shape.direction, shape.radius, boundary.type, boundary.nodes);
+}
+
+template <class Contents, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Contents>, GmshContents>, int> = 0>
+void each_part(Contents &c, Each &each)
+{
+  each(c.complaint, c.again, c.dim, c.groups, c.elements, c.node_tags, c.coords, c.boundary, c.notes);
+}
+
+template <class T>
+constexpr bool is_number = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
 class Packer
 {
 public:
-  template <class T>
-  void operator()(const T &value)
+  template <class... T>
+  void operator()(const T &...values)
   {
-    static_assert(std::is_arithmetic_v<T>);
-    bytes.append(reinterpret_cast<const char *>(&value), sizeof value);
-  }
-  void operator()(const std::string &text) { array(text); }
-  template <class T>
-  void operator()(const std::vector<T> &values)
-  {
-    if constexpr (std::is_arithmetic_v<T>)
-      array(values);
-    else {
-      (*this)(values.size());
-      for (const T &value : values) part(value);
-    }
+    (one(values), ...);
   }
 
   std::string bytes;
 
 private:
   template <class T>
-  void part(const T &value)
+  void one(const T &value)
   {
-    if constexpr (std::is_same_v<T, std::string>)
-      array(value);
+    if constexpr (is_number<T>)
+      append(&value, 1);
     else
       each_part(value, *this);
   }
-  template <class Array>
-  void array(const Array &values)
+  void one(const std::string &text)
   {
-    (*this)(values.size());
-    bytes.append(reinterpret_cast<const char *>(values.data()), values.size() * sizeof(typename Array::value_type));
+    one(text.size());
+    append(text.data(), text.size());
+  }
+  template <class T, std::size_t size>
+  void one(const std::array<T, size> &values)
+  {
+    append(values.data(), size);
+  }
+  template <class T>
+  void one(const std::vector<T> &values)
+  {
+    one(values.size());
+    if constexpr (is_number<T>)
+      append(values.data(), values.size());
+    else
+      for (const T &value : values) one(value);
+  }
+  template <class T>
+  void append(const T *const values, const std::size_t count)
+  {
+    bytes.append(reinterpret_cast<const char *>(values), count * sizeof(T));
   }
 };
 
@@ -80,50 +129,52 @@ class Unpacker
 public:
   explicit Unpacker(const std::string &bytes) : bytes_(bytes) {}
 
-  template <class T>
-  void operator()(T &value)
+  template <class... T>
+  void operator()(T &...values)
   {
-    static_assert(std::is_arithmetic_v<T>);
-    take(&value, sizeof value);
-  }
-  void operator()(std::string &text) { array(text); }
-  template <class T>
-  void operator()(std::vector<T> &values)
-  {
-    if constexpr (std::is_arithmetic_v<T>)
-      array(values);
-    else {
-      values.resize(count(1));
-      for (T &value : values) part(value);
-    }
+    (one(values), ...);
   }
 
 private:
   template <class T>
-  void part(T &value)
+  void one(T &value)
   {
-    if constexpr (std::is_same_v<T, std::string>)
-      array(value);
+    if constexpr (is_number<T>)
+      take(&value, 1);
     else
       each_part(value, *this);
+  }
+  void one(std::string &text)
+  {
+    text.resize(count(1));
+    take(text.data(), text.size());
+  }
+  template <class T, std::size_t size>
+  void one(std::array<T, size> &values)
+  {
+    take(values.data(), size);
+  }
+  template <class T>
+  void one(std::vector<T> &values)
+  {
+    values.resize(count(is_number<T> ? sizeof(T) : 1));
+    if constexpr (is_number<T>)
+      take(values.data(), values.size());
+    else
+      for (T &value : values) one(value);
   }
   /// A number of items of at least `size` bytes each that may still come.
   std::size_t count(const std::size_t size)
   {
     std::size_t items = 0;
-    (*this)(items);
+    one(items);
     if (items > (bytes_.size() - at_) / size) throw std::runtime_error("its mesh is not whole");
     return items;
   }
-  template <class Array>
-  void array(Array &values)
+  template <class T>
+  void take(T *const to, const std::size_t items)
   {
-    constexpr std::size_t size = sizeof(typename Array::value_type);
-    values.resize(count(size));
-    take(values.data(), values.size() * size);
-  }
-  void take(void *const to, const std::size_t size)
-  {
+    const std::size_t size = items * sizeof(T);
     if (size > bytes_.size() - at_) throw std::runtime_error("its mesh is not whole");
     if (size > 0) std::memcpy(to, bytes_.data() + at_, size);
     at_ += size;
@@ -132,81 +183,6 @@ private:
   const std::string &bytes_;
   std::size_t at_ = 0;
 };
-
-template <class Sizes, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Sizes>, SizeField>, int> = 0>
-void each_part(Sizes &sizes, Each &each)
-{
-  each(sizes.coords);
-  each(sizes.simplices);
-  each(sizes.size);
-  each(sizes.dim);
-}
-
-template <class Request, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Request>, GmshRequest>, int> = 0>
-void each_part(Request &request, Each &each)
-{
-  each(request.folder);
-  each(request.file);
-  each(request.box_dim);
-  for (auto *const corner : {&request.lower, &request.upper})
-    for (auto &x : *corner) each(x);
-  each(request.quadrilaterals);
-  each(request.size_factor);
-  each(request.size);
-  each(request.order);
-  each(request.attempt);
-  each(request.straight_where_bent);
-  each_part(request.sizes, each);
-  each(request.dimension_only);
-  each(request.geometry);
-  each(request.near_tags);
-  each(request.near_coords);
-}
-
-template <class Group, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Group>, GmshGroup>, int> = 0>
-void each_part(Group &group, Each &each)
-{
-  each(group.dim);
-  each(group.tag);
-  each(group.name);
-}
-
-template <class Elements, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Elements>, GmshElements>, int> = 0>
-void each_part(Elements &elements, Each &each)
-{
-  each(elements.group);
-  each(elements.type);
-  each(elements.tags);
-  each(elements.nodes);
-}
-
-template <class Boundary, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Boundary>, GmshBoundary>, int> = 0>
-void each_part(Boundary &boundary, Each &each)
-{
-  auto kind = static_cast<int>(boundary.shape.kind);
-  each(kind);
-  if constexpr (!std::is_const_v<Boundary>) boundary.shape.kind = static_cast<BoundaryShape::Kind>(kind);
-  each(boundary.shape.tag);
-  for (auto *const vector : {&boundary.shape.point, &boundary.shape.direction})
-    for (auto &x : *vector) each(x);
-  each(boundary.shape.radius);
-  each(boundary.type);
-  each(boundary.nodes);
-}
-
-template <class Contents, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Contents>, GmshContents>, int> = 0>
-void each_part(Contents &contents, Each &each)
-{
-  each(contents.complaint);
-  each(contents.again);
-  each(contents.dim);
-  each(contents.groups);
-  each(contents.elements);
-  each(contents.node_tags);
-  each(contents.coords);
-  each(contents.boundary);
-  each(contents.notes);
-}
 
 template <class T>
 std::string all_packed(const T &value)
