@@ -221,34 +221,20 @@ void ExodusFile::on_writers(const std::function<void()> &work)
     on_root(*impl_->comm, ExitCode::internal_error, work);
 }
 
-void ExodusFile::write_fields(const int step, const std::vector<NodalField> &fields)
+/// @param order  of nodes or cells in a joined file
+/// @param mine   this rank's values of a field in a split file
+/// @param put    writes the values of field f from `first` on
+template <class Fields, class Order, class Mine, class Put>
+void ExodusFile::write_fields(const Fields &fields, const Order &order, const Mine &mine, const Put &put)
 {
-  auto &writer = impl_->writer;
   for (int f = 0; f < static_cast<int>(fields.size()); ++f) {
     const HostView<double *> &values = fields[f].values;
     if (impl_->part) {
-      const auto mine = impl_->part->at_nodes(values);
-      on_writers([&] { writer->put_field(step, f, 0, mine); });
+      const auto here = mine(values);
+      on_writers([&] { put(f, 0, here); });
     } else {
-      impl_->nodes->in_pieces<double>(values.data(), 1, [&](const GO first, const std::vector<double> &piece) {
-        writer->put_field(step, f, first, piece);
-      });
-    }
-  }
-}
-
-void ExodusFile::write_cell_fields(const int step, const std::vector<CellField> &fields)
-{
-  auto &writer = impl_->writer;
-  for (int f = 0; f < static_cast<int>(fields.size()); ++f) {
-    const HostView<double *> &values = fields[f].values;
-    if (impl_->part) {
-      const auto mine = impl_->part->at_cells(values);
-      on_writers([&] { writer->put_cell_field(step, f, 0, mine); });
-    } else {
-      impl_->cells->in_pieces<double>(values.data(), 1, [&](const GO first, const std::vector<double> &piece) {
-        writer->put_cell_field(step, f, first, piece);
-      });
+      order->template in_pieces<double>(
+          values.data(), 1, [&](const GO first, const std::vector<double> &piece) { put(f, first, piece); });
     }
   }
 }
@@ -261,8 +247,12 @@ void ExodusFile::write(const double time, const std::vector<NodalField> &fields,
   const int step = ++impl_->steps;
   auto &writer = impl_->writer;
   on_writers([&] { writer->put_time(step, time); });
-  write_fields(step, fields);
-  write_cell_fields(step, cell_fields);
+  write_fields(
+      fields, impl_->nodes, [&](const auto &values) { return impl_->part->at_nodes(values); },
+      [&](const int f, const GO first, const auto &values) { writer->put_field(step, f, first, values); });
+  write_fields(
+      cell_fields, impl_->cells, [&](const auto &values) { return impl_->part->at_cells(values); },
+      [&](const int f, const GO first, const auto &values) { writer->put_cell_field(step, f, first, values); });
   on_writers([&] { writer->flush_time(); });
   if (writer) writer->keep_time();
 }

@@ -83,8 +83,8 @@ private:
   void begin_joined(const std::string &path, const ExodusHeader &header, const std::vector<NamedArray> &arrays);
   void begin_split(const std::string &path, const ExodusHeader &header);
   void on_writers(const std::function<void()> &work);
-  void write_fields(int step, const std::vector<NodalField> &fields);
-  void write_cell_fields(int step, const std::vector<CellField> &fields);
+  template <class Fields, class Order, class Mine, class Put>
+  void write_fields(const Fields &fields, const Order &order, const Mine &mine, const Put &put);
   bool is_of_this_mesh(const ExodusReader *file);
   const mesh::Mesh &mesh_;
   std::unique_ptr<Impl> impl_;
