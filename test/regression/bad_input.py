@@ -138,6 +138,8 @@ EACH_RANK_FINDS = [
     (["Contact->Side=" + "n" * 10000], ['"Contact->Side" names the side "nnn', "nnn [...] nnn", "left, right, bottom, top"]),
     (["Contact->Side=a\nb\x1b[31mc"], ['names the side "a?b?[31mc"']),
     (["Material->Young's Modulus=-3"], ['"Material->Young\'s Modulus" must be > 0', "got -3"]),
+    (["Adapt->Error Bound=guaranteed", "Traction->top->Y=x > 0.6 ? -20 : 0"], ['"Traction->top" is not, at (0.', "smooth within each cell"]),
+    (["Adapt->Error Bound=guaranteed", "Traction->top->Y=x > 4.4 ? -20 : 0"], ['"Traction->top" is not, at (4.', "smooth within each cell"]),
     (["Contact->Obstacle->Type=circle", "Contact->Obstacle->Centre={2.6/t,-1}", "Contact->Obstacle->Radius=1",
       "Contact->Friction Coefficient=0.3"],
      ['"Contact->Obstacle": the motion along the side counts from t = 0', '"Centre" is inf [m]', "finite at t = 0"]),

@@ -15,18 +15,32 @@ namespace rpc::bound
 namespace
 {
 
-/// Where something is off most, on all ranks.
-struct WorstPlace {
-  double off, x, y;
-};
-WorstPlace place_of_worst(const Comm &comm, const double off, const double x, const double y)
+/// Where values are off most.
+class Worst
 {
-  const std::vector<double> all = gathered_by_all(comm, std::vector<double>{off, x, y});
-  WorstPlace worst{all[0], all[1], all[2]};
-  for (std::size_t k = 3; k + 2 < all.size(); k += 3)
-    if (all[k] > worst.off) worst = {all[k], all[k + 1], all[k + 2]};
-  return worst;
-}
+public:
+  void add(const double value, const double wanted, const double x, const double y)
+  {
+    largest_ = std::max(largest_, std::abs(value));
+    if (std::abs(value - wanted) > at_[0]) at_ = {std::abs(value - wanted), x, y};
+  }
+  /// "(x, y)" of the place, on all ranks alike; empty if no value is off by more than this part of the largest one. Collective.
+  std::string beyond(const Comm &comm, const double allowed) const
+  {
+    const std::vector<double> all = gathered_by_all(comm, at_);
+    std::size_t worst = 0;
+    for (std::size_t k = 3; k < all.size(); k += 3)
+      if (all[k] > all[worst]) worst = k;
+    if (all[worst] <= allowed * max_all(comm, largest_)) return "";
+    std::ostringstream text;
+    text << "(" << all[worst + 1] << ", " << all[worst + 2] << ")";
+    return text.str();
+  }
+
+private:
+  double largest_ = 0;
+  std::vector<double> at_{0, 0, 0}; // by how much, x, y
+};
 
 /// Whether the polynomials that stand for a traction on the facets of a side are that traction, between their points too. What they lack, such
 /// as half of a jump within a facet, no stress would balance, and J of the exact solution could lie below its bound.
@@ -42,8 +56,7 @@ void require_represented_load(const OnHost &host, const fem::VectorField &tracti
     for (const double s : points.point) rule.point.push_back((part + s) / parts);
   const std::size_t n = rule.point.size();
   const HostPoints x = host.points(facets, rule);
-  double largest = 0, worst = 0;
-  std::size_t at = 0;
+  Worst worst;
   for (int i = 0; i < 2; ++i) {
     const auto t = evaluate(traction[i], x, "Traction->" + name, host.mesh.comm());
     for (std::size_t e = 0; e < facets.size(); ++e)
@@ -51,19 +64,14 @@ void require_represented_load(const OnHost &host, const fem::VectorField &tracti
         double polynomial = 0;
         for (int j = 0; j <= ReferenceStress::degree_of_loads; ++j)
           polynomial += coefficients(facets[e], j, i) / host.length_of(facets[e]) * legendre(j, rule.point[q]);
-        const double off = std::abs(t(e * n + q) - polynomial);
-        largest = std::max(largest, std::abs(t(e * n + q)));
-        if (off > worst) {
-          worst = off;
-          at = e * n + q;
-        }
+        worst.add(t(e * n + q), polynomial, x(e * n + q, 0), x(e * n + q, 1));
       }
   }
-  const WorstPlace place = place_of_worst(host.mesh.comm(), worst, worst > 0 ? x(at, 0) : 0, worst > 0 ? x(at, 1) : 0);
-  RPC_REQUIRE(place.off <= allowed * max_all(host.mesh.comm(), largest),
+  const std::string place = worst.beyond(host.mesh.comm(), allowed);
+  RPC_REQUIRE(place.empty(),
               "deck: \"Adapt->Error Bound\" = guaranteed covers loads that are smooth within each cell; \"Traction->"
-                  << name << "\" is not, at (" << x(at, 0) << ", " << x(at, 1)
-                  << "). Let cells end where it jumps or bends, take smaller ones, or write \"estimated\"");
+                  << name << "\" is not, at " << place
+                  << ". Let cells end where it jumps or bends, take smaller ones, or write \"estimated\"");
 }
 
 /// Whether a prescribed displacement between the nodes is what the elements make of it there.
@@ -76,23 +84,17 @@ void require_represented_displacement(const ScalarField &field, const OnHost &ho
   const std::size_t n = rule.point.size();
   const HostPoints x = host.points(facets, rule);
   const auto u = evaluate(field, x, "Dirichlet->" + name, host.mesh.comm());
-  double largest = 0, worst = 0;
-  std::size_t at = 0;
+  Worst worst;
   for (std::size_t e = 0; e < facets.size(); ++e)
     for (std::size_t q = 0; q < n; ++q) {
       const double here = at_point(host.mesh.element.order, {u(e * n), u(e * n + 1), u(e * n + 2)}, rule.point[q]);
-      const double off = std::abs(u(e * n + q) - here);
-      largest = std::max(largest, std::abs(u(e * n + q)));
-      if (off > worst) {
-        worst = off;
-        at = e * n + q;
-      }
+      worst.add(u(e * n + q), here, x(e * n + q, 0), x(e * n + q, 1));
     }
-  const WorstPlace place = place_of_worst(host.mesh.comm(), worst, worst > 0 ? x(at, 0) : 0, worst > 0 ? x(at, 1) : 0);
-  RPC_REQUIRE(place.off <= 1e-10 * max_all(host.mesh.comm(), largest),
+  const std::string place = worst.beyond(host.mesh.comm(), 1e-10);
+  RPC_REQUIRE(place.empty(),
               "deck: \"Adapt->Error Bound\" = guaranteed covers displacements that the elements represent; "
               "\"Dirichlet->"
-                  << name << "\" is not, at (" << place.x << ", " << place.y << "). Write \"estimated\"");
+                  << name << "\" is not, at " << place << ". Write \"estimated\"");
 }
 
 /// load(f, j, i) += the coefficients of the tractions on a side.
