@@ -10,7 +10,7 @@ long that are then adapted: J(u) is its upper bound less half of the square of i
 reference, or a run fails. Told are the effectivities sqrt((J(u^) - lower) / (J(u^) - J(u))): the smallest, the median, the largest, and how many
 exceed LARGE. With --laws=1 foundations harden, lie on springs, rub with Tresca's friction, or keep the dents of a first step, whose meshes are nested
 triangles: then the reference is the last mesh of the same run. In space the bodies are blocks, sheared or distorted or with a corner cut out, of tetrahedra of
-order 1, without such laws; the reference has cells of P2 half as long and no guaranteed bound: its energy must lie in the interval but for its estimated error,
+order 1, and no laws have dents; the reference has cells of P2 half as long and no guaranteed bound: its energy must lie in the interval but for its estimated error,
 and LARGE is LARGE_IN_SPACE. With --corners=1 loads do not end at the corners: stresses jump with the direction there, which stresses with prescribed tractions resolve
 worse than displacements. The exit code is 1 if a scene failed, an effectivity is below 1 by more than its reference may be off, or the median exceeds LARGE.
 """
@@ -162,10 +162,14 @@ def deck_in_space(rng, halves):
     return lists
 
 
-def runs_in_space(rng):
+def runs_in_space(rng, laws=None):
     """(deck, output, body, settings) of the scene and of its reference."""
     body, halves = solid(rng)
     lists = deck_in_space(rng, halves)
+    while laws and law(laws, contact := dict(lists["Contact"]), load_of(lists), 1000.0):
+        pass  # a step with dents needs nested meshes
+    if laws:
+        lists["Contact"] = contact
     return lists, [("out", body("P1", 1), []), ("fine", body("P2", FINER), ["--set=Adapt->Error Bound=estimated"])]
 
 
@@ -204,7 +208,8 @@ def run(options, folder, output, *more):
 def judge(options, number):
     rng = random.Random(f"{options.seed}/bounds/{number}")
     if options.kind == "space":
-        return judge_runs(options, number, "P1", *runs_in_space(rng))
+        laws = random.Random(f"{options.seed}/laws/{number}") if options.laws else None
+        return judge_runs(options, number, "P1", *runs_in_space(rng, laws))
     element = ["P1", "P2", "Q1", "Q2"][number % 4]
     place, nx, ny, cut_x, cut_y = shape(rng)
     ends = {"top": ("x", place(0, 1)[0], place(1 - cut_x / nx, 1)[0]), "right": ("y", 0.0, place(1, 1 - cut_y / ny)[1])}

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/core/error.hpp"
+#include "rpc/core/tpetra.hpp"
 #include "run_scene.hpp"
 
 #include <cmath>
@@ -49,13 +50,52 @@ TEST(ErrorBoundOnRanks, IsThatOfOneRank)
     }
 }
 
+TEST(ErrorBoundOnRanks, OfABodyInSpaceIsThatOfOneRank)
+{
+  // Of a box, whose cells are alike, and of cells that were refined, of which few are.
+  const RCP<const Comm> world = Tpetra::getDefaultComm(), alone = world->split(world->getRank(), 0);
+  const std::vector<std::string> scenes[] = {
+      {"Contact->Yield Stress=6", "Traction->front->Z=-6*sin(1 + 0.2*x*y)", "Body Force->X=2"},
+      {"Contact->Yield Stress=inf", "Mesh->Cells={3, 2, 2}"},
+      {"Contact->Yield Stress=inf", "Adapt->Meshes=nested", "Adapt->Target Relative Error=0.55"}};
+  for (const auto &scene : scenes) {
+    SCOPED_TRACE(scene.back());
+    auto deck = scene;
+    deck.insert(deck.end(),
+                {"Adapt->Error Bound=guaranteed", "Uzawa->Tolerance=1e-12", "NOX->Residual Tolerance=1e-13"});
+    const Solution several = run_scene(decks + "clamped_block.xml", deck, world),
+                   own = run_scene(decks + "clamped_block.xml", deck, alone);
+    ASSERT_TRUE(several.bound && own.bound);
+    const bound::EnergyBound &a = *several.bound, &b = *own.bound;
+    EXPECT_EQ(a.missing, "");
+    ASSERT_EQ(b.missing, "");
+    const double size = std::abs(b.upper) + std::abs(b.lower);
+    EXPECT_NEAR(a.lower, b.lower, 1e-10 * size);
+    EXPECT_NEAR(a.upper, b.upper, 1e-10 * size);
+    ASSERT_EQ(a.steps.size(), 7u);
+    for (std::size_t k = 0; k < b.steps.size(); ++k) EXPECT_NEAR(a.steps[k], b.steps[k], 1e-8 * size) << k;
+    EXPECT_NEAR(a.moved, b.moved, 1e-10 * b.energy_norm);
+    double sum = 0;
+    const auto parts = to_host(a.squared);
+    for (std::size_t c = 0; c < parts.extent(0); ++c) sum += parts(c);
+    EXPECT_EQ(static_cast<LO>(parts.extent(0)), several.discretization.mesh->num_owned_cells);
+    EXPECT_NEAR(sum_all(*world, sum), a.energy_norm * a.energy_norm, 1e-10 * sum_all(*world, sum));
+  }
+}
+
 TEST(ErrorBoundOnRanks, IsRefusedOnAllOfThem)
 {
-  for (const std::string wrong :
-       {"Traction->top->Y=x > 1.1 ? -10 : 0", "Dirichlet->left->Y=1e-3*y^3", "Contact->Gap=1e-3*x^4"}) {
-    SCOPED_TRACE(wrong);
+  const struct {
+    std::string deck, cells, wrong;
+  } scenes[] = {{input + "beam.xml", "{10, 2}", "Traction->top->Y=x > 1.1 ? -10 : 0"},
+                {input + "beam.xml", "{10, 2}", "Dirichlet->left->Y=1e-3*y^3"},
+                {input + "beam.xml", "{10, 2}", "Contact->Gap=1e-3*x^4"},
+                {decks + "clamped_block.xml", "{4, 2, 2}", "Traction->front->Z=x > 1.1 ? -10 : 0"},
+                {decks + "clamped_block.xml", "{4, 2, 2}", "Contact->Gap=1e-3*x^4"}};
+  for (const auto &scene : scenes) {
+    SCOPED_TRACE(scene.wrong);
     try {
-      run_scene(input + "beam.xml", {"Mesh->Cells={10, 2}", wrong, "Adapt->Error Bound=guaranteed"});
+      run_scene(scene.deck, {"Mesh->Cells=" + scene.cells, scene.wrong, "Adapt->Error Bound=guaranteed"});
       ADD_FAILURE() << "not refused";
     } catch (const Error &error) {
       EXPECT_EQ(error.code(), ExitCode::bad_input) << error.what();

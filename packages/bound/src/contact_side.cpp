@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <set>
@@ -54,29 +53,10 @@ void require_represented_gap(const contact::ContactOptions &options, const Comm 
     }
 }
 
-/// A number of the law of a side, the same everywhere.
-double law(const contact::ContactOptions &options, const int parameter)
-{
-  return value_everywhere(options.*contact::law_parameters[parameter].field)
-      .value_or(std::numeric_limits<double>::quiet_NaN());
-}
-
 OfFacet not_negative(OfFacet b)
 {
   for (double &coefficient : b) coefficient = std::max(0., coefficient);
   return b;
-}
-
-/// (points) Of points with friction.
-DeviceView<char *> where_friction_acts(const contact::ContactNodes &points)
-{
-  const DeviceView<char *> acting("rpc::bound::acting", points.size());
-  const contact::FrictionPoints friction = points.friction;
-  Kokkos::parallel_for(
-      "rpc::bound::acting", device_range(points.size()),
-      KOKKOS_LAMBDA(const LO i) { acting(i) = contact::acts(friction(i)); });
-  Kokkos::fence();
-  return acting;
 }
 
 /// Friction at a facet whose last point has been added to the side.
@@ -140,20 +120,6 @@ struct SideFacet {
   double block, modulus, prescribed;
 };
 
-/// What ranks hold, as rows of numbers. @return that of all ranks
-template <class Row>
-std::vector<Row> rows_of_all(const Comm &comm, const std::vector<Row> &mine)
-{
-  constexpr std::size_t width = sizeof(Row) / sizeof(double);
-  static_assert(sizeof(Row) == width * sizeof(double), "numbers alone");
-  std::vector<double> numbers(mine.size() * width);
-  if (!mine.empty()) std::memcpy(numbers.data(), mine.data(), mine.size() * sizeof(Row));
-  numbers = gathered_by_all(comm, numbers);
-  std::vector<Row> all(numbers.size() / width);
-  if (!all.empty()) std::memcpy(static_cast<void *>(all.data()), numbers.data(), all.size() * sizeof(Row));
-  return all;
-}
-
 std::vector<SideFacet> own_facets(const analysis::Problem &problem, const OnHost &host, const std::vector<LO> &facets,
                                   const HostView<char *[2]> &prescribed)
 {
@@ -177,6 +143,23 @@ std::vector<SideFacet> own_facets(const analysis::Problem &problem, const OnHost
 }
 
 } // namespace
+
+double law(const contact::ContactOptions &options, const int parameter)
+{
+  return value_everywhere(options.*contact::law_parameters[parameter].field)
+      .value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+DeviceView<char *> where_friction_acts(const contact::ContactNodes &points)
+{
+  const DeviceView<char *> acting("rpc::bound::acting", points.size());
+  const contact::FrictionPoints friction = points.friction;
+  Kokkos::parallel_for(
+      "rpc::bound::acting", device_range(points.size()),
+      KOKKOS_LAMBDA(const LO i) { acting(i) = contact::acts(friction(i)); });
+  Kokkos::fence();
+  return acting;
+}
 
 ContactFacets contact_side(const analysis::Problem &problem, const analysis::Model &model, const analysis::Step &step,
                            const OnHost &host, const int k, const PointTractions &solution,

@@ -20,6 +20,15 @@ KOKKOS_INLINE_FUNCTION LO node_of(const SpaceFacets &facets, const LO f, const i
 {
   return facets.node(f, a);
 }
+/// Facets among which are all on the boundary: the first ones.
+LO outer_facets(const CellInput &in)
+{
+  return in.facets.size();
+}
+LO outer_facets(const SpaceInput &in)
+{
+  return in.facets.num_outer;
+}
 int nodes_of_facets(const CellInput &)
 {
   return 3;
@@ -50,7 +59,7 @@ RCP<Vector> out_of_balance(const Input &in, const fem::Discretization &d, const 
               for (int i = 0; i < dim; ++i) to(dof(dim, node, i)) -= Q(around.cell(k), a, i);
       });
   Kokkos::parallel_for(
-      "rpc::bound::forces_of_facets", device_range(facets.size()), KOKKOS_LAMBDA(const LO f) {
+      "rpc::bound::forces_of_facets", device_range(outer_facets(in)), KOKKOS_LAMBDA(const LO f) {
         if (!facets.on_boundary(f)) return;
         for (int a = 0; a < of_facet; ++a) {
           const LO node = node_of(facets, f, a);
@@ -136,7 +145,7 @@ double work_of(const fem::Discretization &d, const DeviceView<double ***> &momen
   if (!loaded) return work;
   const Vector rest(d.owned_dofs);
   const auto body = nodal_forces(in, d, *fem::on_overlap(d, rest));
-  const DeviceView<double ***> none("rpc::bound::nothing", in.facets.size(), nodes_of_facets(in), Input::dim);
+  const DeviceView<double ***> none("rpc::bound::nothing", outer_facets(in), nodes_of_facets(in), Input::dim);
   return work + out_of_balance(in, d, none, body)->dot(u);
 }
 

@@ -18,12 +18,15 @@ inline double inner_of(const std::vector<double> &x, const std::vector<double> &
 }
 
 /// The least of a quadratic function x . H x/2 - f . x between bounds: conjugate gradients on the face, with steps that leave it (Dostal, SIAM
-/// J. Optim. 7, 1997). It ends at rounding: a bound changes in proportion to what is left, which would show between one rank and two.
-/// @param fit  has apply(x, y), y <- H x; right_side(), f; start(); low() and high(); scale(), which makes about 1 of the diagonal
+/// J. Optim. 7, 1997). It ends at rounding: a bound changes in proportion to what is left, which would show between one rank and two. What
+/// steps have made of the gradient drifts from it, which shows where H has large eigenvalues beside small ones; then it goes on from the gradient.
+/// @param fit  has apply(x, y), y <- H x; gradient(x, y), y <- H x - f, where that is small accurately; right_side(), f; start(); low() and high();
+/// scale(), which makes about 1 of the diagonal
 template <class Fit>
 std::vector<double> least_in_box(const Fit &fit)
 {
-  constexpr double enough = 1e-26; // square of what may be left of the gradient, over that of f, both scaled
+  // Squares of what may be left of the gradient, over that of f and over what was left at a look; both scaled.
+  constexpr double enough = 1e-26, enough_after_look = 1e-10;
   const std::vector<double> &scale = fit.scale();
   const std::size_t n = scale.size();
   std::vector<double> x(n), g(n), y(n), Hy(n), free(n), chopped(n), scaled(n), lower(n), upper(n);
@@ -46,11 +49,16 @@ std::vector<double> least_in_box(const Fit &fit)
     for (std::size_t i = 0; i < n; ++i) y[i] = Hy[i] / size;
   }
   const double fixed_step = 1 / (1.1 * norm);
-  apply(x, g);
-  for (std::size_t i = 0; i < n; ++i) g[i] -= scale[i] * fit.right_side()[i];
-  double size_of_f = 0;
-  for (std::size_t i = 0; i < n; ++i) size_of_f += std::pow(scale[i] * fit.right_side()[i], 2);
-  bool restart = true;
+  const auto look = [&] {
+    for (std::size_t i = 0; i < n; ++i) scaled[i] = scale[i] * x[i];
+    fit.gradient(scaled, g);
+    for (std::size_t i = 0; i < n; ++i) g[i] *= scale[i];
+  };
+  look();
+  double wanted = 0,
+         before = std::numeric_limits<double>::infinity(); // squares: what may be left, what was left at a look
+  for (std::size_t i = 0; i < n; ++i) wanted += enough * std::pow(scale[i] * fit.right_side()[i], 2);
+  bool restart = true, looked = true;
   for (int step = 0; step < 3000; ++step) {
     for (std::size_t i = 0; i < n; ++i) {
       const bool low = x[i] <= lower[i], high = x[i] >= upper[i];
@@ -58,7 +66,16 @@ std::vector<double> least_in_box(const Fit &fit)
       chopped[i] = low && high ? 0 : (low ? std::min(g[i], 0.) : (high ? std::max(g[i], 0.) : 0.));
     }
     const double ff = inner_of(free, free), cc = inner_of(chopped, chopped);
-    if (ff + cc <= enough * size_of_f) break;
+    if (looked) {
+      if (ff + cc >= before / 4 || ff + cc == 0) break;
+      if (before < std::numeric_limits<double>::infinity()) wanted = enough_after_look * (ff + cc);
+      before = ff + cc;
+      looked = false;
+    } else if (ff + cc <= wanted) {
+      look();
+      restart = looked = true;
+      continue;
+    }
     if (cc > ff) { // leave bounds
       apply(chopped, Hy);
       double most = inner_of(chopped, g) / inner_of(chopped, Hy);
@@ -99,8 +116,7 @@ std::vector<double> least_in_box(const Fit &fit)
     }
     for (std::size_t i = 0; i < n; ++i)
       if (x[i] > lower[i] && x[i] < upper[i]) x[i] = std::clamp(x[i] - fixed_step * g[i], lower[i], upper[i]);
-    apply(x, g);
-    for (std::size_t i = 0; i < n; ++i) g[i] -= scale[i] * fit.right_side()[i];
+    look();
     restart = true;
   }
   for (std::size_t i = 0; i < n; ++i) x[i] = std::clamp(x[i] * scale[i], fit.low()[i], fit.high()[i]);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "equilibration.hpp"
-#include "rpc/analysis/run.hpp"
+#include "boundary.hpp"
 #include "space_cells.hpp"
-#include "space_contact.hpp"
+#include "space_contact_terms.hpp"
 
 #include <vector>
 
@@ -18,14 +17,12 @@ struct SpaceBoundary {
   bool beyond = false;             ///< whether loads have more than the degree of the stresses
 };
 
-/// @param pressure  (contact points) [Pa]
-/// @throws rpc::Error (bad_input) where the sides are not covered
+/// Collective. @throws rpc::Error (bad_input) where the sides are not covered
 SpaceBoundary boundary_of(const analysis::Problem &problem, const analysis::Step &step, const SpaceInput &in,
-                          const HostView<double *> &pressure);
+                          const PointTractions &solution);
 
-/// The same tractions with those of contact pressures.
-/// @param pressure  (sides; facets) at the corners [Pa]
-BoundaryTractions with_pressure(const SpaceInput &in, const SpaceBoundary &boundary,
-                                const std::vector<std::vector<OfTriangle>> &pressure);
+/// The same tractions with those of contact. @param contact  (sides)
+BoundaryTractions with_contact(const SpaceInput &in, const SpaceBoundary &boundary,
+                               const std::vector<SpaceTractions> &contact);
 
 } // namespace rpc::bound

@@ -149,7 +149,7 @@ struct DerivativeOfCells {
   SpaceForms forms;
   Tractions t;
   bool linear;
-  DeviceView<double **> out; // (cells, tractions)
+  DeviceView<float **> out; // (cells, tractions)
 
   KOKKOS_FUNCTION void operator()(const LO c) const
   {
@@ -162,10 +162,13 @@ struct DerivativeOfCells {
       x[i] = static_cast<float>(given[i]);
       y[i] = linear ? static_cast<float>(forms.b(kind, i)) : 0;
     }
-    for (int j = 0; j < nt; ++j) // A is symmetric
-      for (int i = 0; i < nt; ++i) y[i] += forms.A(kind, j, i) * x[j];
+    const float *column = forms.A.data() + static_cast<std::size_t>(kind) * nt * nt; // A is symmetric
+    for (int j = 0; j < nt; j += 4, column += 4 * nt)
+      for (int i = 0; i < nt; ++i)
+        y[i] += (column[i] * x[j] + column[nt + i] * x[j + 1]) +
+                (column[2 * nt + i] * x[j + 2] + column[3 * nt + i] * x[j + 3]);
     for (int s = 0; s < 4; ++s) {
-      const double sign = in.facets.sign(c, s);
+      const float sign = static_cast<float>(in.facets.sign(c, s));
       for (int i = s * nt / 4; i < (s + 1) * nt / 4; ++i) out(c, i) = sign * y[i];
     }
   }
@@ -269,16 +272,31 @@ struct SpaceDifference {
 
 } // namespace
 
+double product_over_ranks(const SpaceInput &in, const Comm &comm, const Tractions &x, const Tractions &y)
+{
+  const int per_facet = in.reference.tractions / 4;
+  const auto counts = in.facets.counts;
+  double sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::bound::product_in_space", device_range(in.facets.size()),
+      KOKKOS_LAMBDA(const LO f, double &part) {
+        const std::size_t at = static_cast<std::size_t>(f) * per_facet;
+        for (int q = 0; q < per_facet && counts(f); ++q) part += x(at + q) * y(at + q);
+      },
+      sum);
+  return sum_all(comm, sum);
+}
+
 SpaceForms cell_forms(const SpaceInput &in, const Vector &u)
 {
   const int nt = in.reference.tractions, kinds = static_cast<int>(in.example.extent(0)),
             functions = static_cast<int>(in.facets.node.extent(1));
   SpaceForms forms;
-  forms.A = DeviceView<float ***>("rpc::bound::A", kinds, nt, nt);
+  forms.A = decltype(forms.A)("rpc::bound::A", kinds, nt, nt);
   forms.b = DeviceView<double **>("rpc::bound::b", kinds, nt);
   forms.inner = DeviceView<double ***>("rpc::bound::inner", kinds, nt + 1, in.reference.inner);
   forms.boundary =
-      DeviceView<double *>("rpc::bound::boundary", static_cast<std::size_t>(in.facets.size()) * 3 * functions);
+      DeviceView<double *>("rpc::bound::boundary", static_cast<std::size_t>(in.facets.num_outer) * 3 * functions);
   for_order(in.reference.degree, [&](const auto order) {
     Kokkos::parallel_for("rpc::bound::make_space_forms", device_range(static_cast<LO>(kinds)),
                          MakeSpaceForms<order.value>{in, forms});
@@ -301,7 +319,7 @@ SpaceForms cell_forms(const SpaceInput &in, const Vector &u)
 }
 
 void add_up(const SpaceInput &in, const SpaceForms &forms, const Tractions &t, const bool linear,
-            const DeviceView<double **> &scratch, const Tractions &sum)
+            const DeviceView<float **> &scratch, const Tractions &sum)
 {
   for_order(in.reference.degree, [&](const auto order) {
     Kokkos::parallel_for("rpc::bound::derivative_of_cells", device_range(in.num_cells()),
@@ -314,28 +332,27 @@ void add_up(const SpaceInput &in, const SpaceForms &forms, const Tractions &t, c
       "rpc::bound::gather_at_facets", device_range(facets.size()), KOKKOS_LAMBDA(const LO f) {
         for (int q = 0; q < per_facet; ++q) {
           const std::size_t at = static_cast<std::size_t>(f) * per_facet + q;
-          double y = scratch(facets.cell(f, 0), facets.ordinal(f, 0) * per_facet + q);
-          if (!facets.on_boundary(f))
-            y += scratch(facets.cell(f, 1), facets.ordinal(f, 1) * per_facet + q);
-          else if (linear)
-            y += boundary(at);
+          double y = linear && facets.on_boundary(f) ? boundary(at) : 0;
+          for (int side = 0; side < 2; ++side) // where a cell is elsewhere nobody asks for it
+            if (facets.cell(f, side) >= 0) y += scratch(facets.cell(f, side), facets.ordinal(f, side) * per_facet + q);
           sum(at) = y;
         }
       });
   Kokkos::fence();
 }
 
-StressDifference stress_difference(const SpaceInput &in, const SpaceForms &forms, const Tractions &t, const Vector &u,
-                                   const DeviceView<double *> &of_cell)
+StressDifference stress_difference(const SpaceInput &in, const Comm &comm, const SpaceForms &forms, const Tractions &t,
+                                   const Vector &u, const DeviceView<double *> &of_cell)
 {
   StressDifference d;
   for_order(in.reference.degree, [&](const auto order) {
-    Kokkos::parallel_reduce("rpc::bound::stress_difference", device_range(in.num_cells()),
+    Kokkos::parallel_reduce("rpc::bound::stress_difference", device_range(in.num_owned_cells),
                             SpaceDifference<order.value>{in, forms, device_read(u), t, of_cell}, d.energy,
                             Kokkos::Max<double>(d.imbalance), Kokkos::Max<double>(d.force));
   });
-  d.imbalance = std::max(d.imbalance, 0.);
-  d.force = std::max(d.force, 0.);
+  d.energy = sum_all(comm, d.energy);
+  d.imbalance = max_all(comm, std::max(d.imbalance, 0.));
+  d.force = max_all(comm, std::max(d.force, 0.));
   return d;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "space_contact.hpp"
 
-#include "least_in_box.hpp"
 #include "rpc/contact/law/foundation.hpp"
+#include "space_traction_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,145 +13,6 @@ namespace rpc::bound
 namespace
 {
 
-/// Means over a triangle of the products of two of its barycentric coordinates.
-constexpr double barycentric_mass(const int i, const int j)
-{
-  return i == j ? 1. / 6 : 1. / 12;
-}
-
-/// The quadratic function of the fit: x . H x/2 - f . x for the pressures x at the corners of facets.
-class FitInSpace
-{
-public:
-  FitInSpace(const SpaceContact &c, const std::vector<OfTriangle> &v) : c_(c)
-  {
-    double area = 0;
-    for (const double a : c.area) area += a;
-    size_ = std::sqrt(2 * area / static_cast<double>(c.area.size()));
-    list_hats();
-    const std::size_t n = c.facet.size() * 3;
-    f_.assign(n, 0.);
-    scale_.assign(n, 0.);
-    start_.assign(n, 0.);
-    low_bound_.assign(n, 0.);
-    high_bound_.assign(n, c.limit);
-    std::vector<double> wanted(c.force);
-    for (std::size_t i = 0; i < wanted.size(); ++i)
-      if (!c.free[i]) wanted[i] = 0;
-    add_weighted(wanted);
-    add_transposed(wanted, f_);
-    for (std::size_t e = 0; e < c.facet.size(); ++e)
-      for (int i = 0; i < 3; ++i) {
-        double own = 0;
-        start_[e * 3 + i] = std::clamp(c.pressure[e][i], 0., c.limit);
-        for (int j = 0; j < 3; ++j) {
-          const double m = barycentric_mass(i, j);
-          f_[e * 3 + i] += near_weight(e) * m * std::clamp(c.pressure[e][j], 0., c.limit) + c.area[e] * m * v[e][j];
-          own += m * m;
-        }
-        scale_[e * 3 + i] =
-            1 / std::sqrt(c.area[e] * c.area[e] * own / (c.modulus * size_) + near_weight(e) * barycentric_mass(i, i));
-      }
-  }
-
-  /// y <- H x.
-  void apply(const std::vector<double> &x, std::vector<double> &y) const
-  {
-    std::vector<double> force(c_.force.size(), 0.);
-    for (std::size_t e = 0; e < c_.facet.size(); ++e)
-      for (int a = 0; a < 3; ++a)
-        for (int j = 0; j < 3; ++j)
-          if (c_.free[c_.point[e][a]]) force[c_.point[e][a]] += c_.area[e] * barycentric_mass(a, j) * x[e * 3 + j];
-    add_weighted(force);
-    y.assign(x.size(), 0.);
-    add_transposed(force, y);
-    for (std::size_t e = 0; e < c_.facet.size(); ++e)
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) y[e * 3 + i] += near_weight(e) * barycentric_mass(i, j) * x[e * 3 + j];
-  }
-  const std::vector<double> &right_side() const { return f_; }
-  const std::vector<double> &scale() const { return scale_; } ///< that makes about 1 of the diagonal
-  const std::vector<double> &start() const { return start_; }
-  const std::vector<double> &low() const { return low_bound_; }
-  const std::vector<double> &high() const { return high_bound_; }
-
-private:
-  double near_weight(const std::size_t e) const
-  {
-    constexpr double share = 0.1; // how much the pressure at the nodes counts beside their forces
-    return share * c_.area[e] * c_.area[e] / (c_.modulus * size_);
-  }
-  /// Squares of intervals of hats on all levels, from about four nodes for each down to one for all.
-  void list_hats()
-  {
-    std::array<double, 2> high{};
-    int count = 0;
-    for (int d = 0; d < 2; ++d) {
-      low_[d] = std::numeric_limits<double>::infinity();
-      high[d] = -low_[d];
-    }
-    for (std::size_t i = 0; i < c_.place.size(); ++i) {
-      if (!c_.free[i]) continue;
-      ++count;
-      for (int d = 0; d < 2; ++d) {
-        low_[d] = std::min(low_[d], c_.place[i][d]);
-        high[d] = std::max(high[d], c_.place[i][d]);
-      }
-    }
-    for (int d = 0; d < 2; ++d) span_[d] = high[d] - low_[d];
-    if (!(span_[0] > 0 && span_[1] > 0)) return;
-    for (int n = static_cast<int>(std::sqrt(count)) / 2; n >= 1; n /= 2) intervals_.push_back(n);
-  }
-  /// force <- S force, with S the sum over all levels of the products with hats, and the nodes themselves.
-  void add_weighted(std::vector<double> &force) const
-  {
-    constexpr double of_all = 100; // of the force and moments of the whole side, squared
-    std::vector<double> sum(force), hat;
-    for (const int n : intervals_) {
-      hat.assign(static_cast<std::size_t>(n + 1) * (n + 1), 0.);
-      const auto at = [&](const std::size_t i, std::array<double, 4> &weight) { // of four hats from the first one on
-        int k[2];
-        double x[2];
-        for (int d = 0; d < 2; ++d) {
-          x[d] = n * (c_.place[i][d] - low_[d]) / span_[d];
-          k[d] = std::clamp(static_cast<int>(x[d]), 0, n - 1);
-          x[d] -= k[d];
-        }
-        weight = {(1 - x[0]) * (1 - x[1]), (1 - x[0]) * x[1], x[0] * (1 - x[1]), x[0] * x[1]};
-        return static_cast<std::size_t>(k[0]) * (n + 1) + k[1];
-      };
-      const std::size_t step[4] = {0, 1, static_cast<std::size_t>(n) + 1, static_cast<std::size_t>(n) + 2};
-      std::array<double, 4> weight{};
-      for (std::size_t i = 0; i < force.size(); ++i) {
-        if (!c_.free[i]) continue;
-        const std::size_t first = at(i, weight);
-        for (int k = 0; k < 4; ++k) hat[first + step[k]] += weight[k] * force[i];
-      }
-      for (std::size_t i = 0; i < force.size(); ++i) {
-        if (!c_.free[i]) continue;
-        const std::size_t first = at(i, weight);
-        for (int k = 0; k < 4; ++k) sum[i] += (n == 1 ? of_all : 1) * weight[k] * hat[first + step[k]];
-      }
-    }
-    force = sum;
-  }
-  /// y += what the pressures do to forces at the points, transposed.
-  void add_transposed(const std::vector<double> &force, std::vector<double> &y) const
-  {
-    for (std::size_t e = 0; e < c_.facet.size(); ++e)
-      for (int a = 0; a < 3; ++a)
-        for (int j = 0; j < 3; ++j)
-          if (c_.free[c_.point[e][a]])
-            y[e * 3 + j] += c_.area[e] * barycentric_mass(a, j) * force[c_.point[e][a]] / (c_.modulus * size_);
-  }
-
-  const SpaceContact &c_;
-  double size_ = 0; // of facets [m]
-  std::array<double, 2> low_{}, span_{};
-  std::vector<int> intervals_;
-  std::vector<double> f_, scale_, start_, low_bound_, high_bound_;
-};
-
 using Corner = std::array<double, 3>; // barycentric
 
 double value_at(const OfTriangle &of, const Corner &x)
@@ -159,62 +20,165 @@ double value_at(const OfTriangle &of, const Corner &x)
   return of[0] * x[0] + of[1] * x[1] + of[2] * x[2];
 }
 
-/// The part of a triangle where sign * v >= 0.
-std::vector<Corner> part_of(const OfTriangle &v, const double sign)
+/// The part of a convex polygon in a triangle where sign * v >= 0.
+std::vector<Corner> part_of(const std::vector<Corner> &polygon, const OfTriangle &v, const double sign)
 {
   std::vector<Corner> corners;
-  for (int k = 0; k < 3; ++k) {
-    const int next = (k + 1) % 3;
-    const double a = sign * v[k], b = sign * v[next];
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Corner &here = polygon[k], &next = polygon[(k + 1) % polygon.size()];
+    const double a = sign * value_at(v, here), b = sign * value_at(v, next);
+    if (a >= 0) corners.push_back(here);
+    if ((a < 0) == (b < 0) || a == 0 || b == 0) continue;
+    const double s = a / (a - b);
     Corner x{};
-    if (a >= 0) {
-      x[k] = 1;
-      corners.push_back(x);
-    }
-    if ((a < 0) != (b < 0) && a != 0 && b != 0) {
-      x = {};
-      x[next] = a / (a - b);
-      x[k] = 1 - x[next];
-      corners.push_back(x);
-    }
+    for (int i = 0; i < 3; ++i) x[i] = (1 - s) * here[i] + s * next[i];
+    corners.push_back(x);
   }
   return corners;
 }
 
-/// Integrals of v and of p v over a part.
-std::array<double, 2> over(const std::vector<Corner> &corners, const OfTriangle &v, const OfTriangle &p)
+/// Parts of a triangle within which none of some linear functions changes its sign.
+class PartsOfTriangle
 {
-  std::array<double, 2> sum{};
-  for (std::size_t k = 2; k < corners.size(); ++k) {
-    const Corner t[3] = {corners[0], corners[k - 1], corners[k]};
-    const double size = std::abs((t[1][1] - t[0][1]) * (t[2][2] - t[0][2]) - (t[1][2] - t[0][2]) * (t[2][1] - t[0][1]));
-    for (int i = 0; i < 3; ++i) {
-      sum[0] += size * value_at(v, t[i]) / 3;
-      for (int j = 0; j < 3; ++j) sum[1] += size * barycentric_mass(i, j) * value_at(v, t[i]) * value_at(p, t[j]);
-    }
+public:
+  void end_at_roots_of(const OfTriangle &v)
+  {
+    if (*std::min_element(v.begin(), v.end()) >= 0 || *std::max_element(v.begin(), v.end()) <= 0) return;
+    std::vector<std::vector<Corner>> cut;
+    for (const auto &polygon : parts_)
+      for (const double sign : {1., -1.}) {
+        cut.push_back(part_of(polygon, v, sign));
+        if (cut.back().size() < 3) cut.pop_back();
+      }
+    parts_ = cut;
   }
-  return sum;
+  /// Sum of w f(x), exact where f is a polynomial of degree 2 within each part.
+  template <class Function>
+  void integrate(const Function &f) const
+  {
+    for (const auto &corners : parts_)
+      for (std::size_t k = 2; k < corners.size(); ++k) {
+        const Corner *const t[3] = {&corners[0], &corners[k - 1], &corners[k]};
+        const auto side = [&](const int v, const int i) { return (*t[v])[i] - (*t[0])[i]; };
+        const double size = std::abs(side(1, 1) * side(2, 2) - side(1, 2) * side(2, 1));
+        for (int m = 0; m < 3; ++m) { // the middles of the sides
+          Corner x{};
+          for (int i = 0; i < 3; ++i) x[i] = ((*t[m])[i] + (*t[(m + 1) % 3])[i]) / 2;
+          f(x, size / 3);
+        }
+      }
+  }
+
+private:
+  std::vector<std::vector<Corner>> parts_{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+};
+
+OfTriangle plus(const OfTriangle &x, const double a, const OfTriangle &y)
+{
+  return {x[0] + a * y[0], x[1] + a * y[1], x[2] + a * y[2]};
 }
 
 } // namespace
 
 std::vector<OfTriangle> fitted_pressure(const SpaceContact &c, const std::vector<OfTriangle> &v)
 {
-  const std::vector<double> x = least_in_box(FitInSpace(c, v));
-  std::vector<OfTriangle> p(c.facet.size());
-  for (std::size_t e = 0; e < p.size(); ++e)
-    for (int i = 0; i < 3; ++i) p[e][i] = x[e * 3 + i];
-  return p;
+  WantedInSpace wanted;
+  wanted.force[0] = c.force;
+  wanted.free = c.free;
+  wanted.depth[0] = v;
+  wanted.high[0] = c.limit_of;
+  wanted.spring = c.spring;
+  wanted.rise = c.rise;
+  for (std::size_t e = 0; e < c.facet.size(); ++e) {
+    OfTriangle near = c.pressure[e];
+    for (int i = 0; i < 3; ++i)
+      near[i] = std::clamp(near[i], 0., c.rise > 0 ? std::numeric_limits<double>::infinity() : c.limit_of[e][i]);
+    wanted.near[0].push_back(near);
+    wanted.low[0].push_back({});
+  }
+  return fitted_in_space(c, wanted)[0];
 }
 
-TriangleIntegrals contact_integrals(const OfTriangle &v, const OfTriangle &p, const double limit)
+AlongSide fitted_friction(const SpaceContact &c, const AlongSide &slip)
 {
+  const SpaceFriction &f = c.friction;
+  WantedInSpace wanted;
+  wanted.components = 2;
+  wanted.force = f.force;
+  wanted.free = f.free;
+  wanted.depth = slip;
+  for (std::size_t e = 0; e < c.facet.size(); ++e) {
+    wanted.toward.emplace_back();
+    for (auto *const side : {&wanted.near, &wanted.low, &wanted.high})
+      for (auto &component : *side) component.push_back({});
+    for (int a = 0; a < 3; ++a) {
+      // Limits are discs. Of one the box has the traction of the node in it and touches the circle with its corners: along a traction that has
+      // reached the limit it is a line.
+      const double s = f.limit_of[e][a];
+      std::array<double, 2> q = f.traction[c.point[e][a]], toward{1, 0};
+      const double size = std::hypot(q[0], q[1]), slipped = std::hypot(slip[0][e][a], slip[1][e][a]);
+      if (size > 0)
+        toward = {q[0] / size, q[1] / size};
+      else if (slipped > 0)
+        toward = {slip[0][e][a] / slipped, slip[1][e][a] / slipped};
+      const double along = std::clamp(size, s * std::sqrt(0.5), s), across = std::sqrt((s - along) * (s + along));
+      for (int k = 0; k < 2; ++k) {
+        wanted.near[k][e][a] = size > s ? s * toward[k] : q[k];
+        wanted.high[k][e][a] = k == 0 ? along : across;
+        wanted.low[k][e][a] = -wanted.high[k][e][a];
+      }
+      wanted.toward[e][a] = toward;
+    }
+  }
+  return fitted_in_space(c, wanted);
+}
+
+TriangleIntegrals contact_integrals(const OfTriangle &v, const OfTriangle &p, const TriangleLaw &law)
+{
+  const bool rigid = contact::is_rigid(*std::max_element(law.limit.begin(), law.limit.end()));
+  PartsOfTriangle parts; // within which the integrands are polynomials of degree 2
+  parts.end_at_roots_of(v);
+  if (!rigid) {
+    parts.end_at_roots_of(plus(v, -law.spring, law.limit));
+    parts.end_at_roots_of(plus(p, -1, law.limit));
+  }
   TriangleIntegrals sum;
-  sum.gap -= over(part_of(v, -1), v, p)[1];
-  if (contact::is_rigid(limit)) return sum;
-  const auto pressed = over(part_of(v, 1), v, p);
-  sum.yielding = limit * pressed[0];
-  sum.gap += limit * pressed[0] - pressed[1];
+  parts.integrate([&](const Corner &x, const double w) {
+    const contact::Foundation f{rigid ? law.limit[0] : value_at(law.limit, x), law.rise, law.spring};
+    const double deep = value_at(v, x), pressure = std::max(0., value_at(p, x));
+    if (rigid && law.spring == 0) { // there is no penetration
+      sum.gap += w * pressure * std::max(0., -deep);
+      return;
+    }
+    const double energy = contact::foundation_energy(deep, f);
+    sum.energy += w * energy;
+    sum.gap += w * std::max(0., energy + contact::conjugate_energy(pressure, f) - pressure * deep);
+  });
+  return sum;
+}
+
+TriangleIntegrals friction_integrals(const std::array<OfTriangle, 2> &slip, const std::array<OfTriangle, 2> &traction,
+                                     const OfTriangle &limit)
+{
+  constexpr int parts = 8; // along each side
+  const auto length_at = [&](const Corner &x) { return std::hypot(value_at(slip[0], x), value_at(slip[1], x)); };
+  TriangleIntegrals sum;
+  const auto product = [](const OfTriangle &x, const OfTriangle &y) { // the mean
+    return ((x[0] + x[1] + x[2]) * (y[0] + y[1] + y[2]) + x[0] * y[0] + x[1] * y[1] + x[2] * y[2]) / 12;
+  };
+  for (int i = 0; i < parts; ++i)
+    for (int j = 0; i + j < parts; ++j)
+      for (int flipped = 0; flipped < 2 && i + j + flipped < parts; ++flipped) {
+        const int at[3][2] = {{i + flipped, j + flipped}, {i + 1, j}, {i, j + 1}};
+        OfTriangle size{}, s{};
+        for (int v = 0; v < 3; ++v) {
+          const Corner x{1 - double(at[v][0] + at[v][1]) / parts, double(at[v][0]) / parts, double(at[v][1]) / parts};
+          size[v] = length_at(x);
+          s[v] = value_at(limit, x);
+        }
+        sum.energy += product(size, s) / (parts * parts);
+      }
+  sum.gap = std::max(0., sum.energy - product(slip[0], traction[0]) - product(slip[1], traction[1]));
   return sum;
 }
 

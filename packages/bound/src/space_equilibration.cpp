@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "space_cells.hpp"
 
+#include <algorithm>
+
 namespace rpc::bound
 {
 namespace
@@ -14,8 +16,9 @@ struct BalanceStarsInSpace {
   DeviceView<double ***> Q, mean, known;
   fem::NodeToCells around;
   DeviceView<std::size_t *> first; // (nodes + 1) where the matrix of a star begins
-  DeviceView<double *> matrix;
-  DeviceView<double **> sent; // (entries of node_to_cells, 3) out
+  LO from;                         // the first node of a batch
+  DeviceView<double *> matrix;     // of a batch
+  DeviceView<double **> sent;      // (entries of node_to_cells, 3) out
 
   KOKKOS_FUNCTION int node_of_cell(const LO c, const LO node) const
   {
@@ -89,11 +92,12 @@ struct BalanceStarsInSpace {
     return singular;
   }
 
-  KOKKOS_FUNCTION void operator()(const LO node) const
+  KOKKOS_FUNCTION void operator()(const LO of_batch) const
   {
+    const LO node = from + of_batch;
     const std::size_t begin = around.row(node);
     const int n = static_cast<int>(around.row(node + 1) - begin);
-    double *const L = matrix.data() + first(node);
+    double *const L = matrix.data() + (first(node) - first(from));
     bool singular = false;
     for (int i = 0; i < 3; ++i) {
       if (!same_as_before(node, i)) singular = factor(node, i, L);
@@ -142,12 +146,12 @@ struct BalanceStarsInSpace {
 DeviceView<double ***> known_moments(const SpaceInput &in, const BoundaryTractions &boundary)
 {
   const int functions = static_cast<int>(in.facets.node.extent(1));
-  DeviceView<double ***> m("rpc::bound::known_moments", in.facets.size(), functions, 3);
+  DeviceView<double ***> m("rpc::bound::known_moments", in.facets.num_outer, functions, 3);
   const auto load = boundary.load;
   const auto moment = in.tables.moment;
   const SpaceFacets facets = in.facets;
   Kokkos::parallel_for(
-      "rpc::bound::known_moments", device_range(facets.size()), KOKKOS_LAMBDA(const LO f) {
+      "rpc::bound::known_moments", device_range(facets.num_outer), KOKKOS_LAMBDA(const LO f) {
         if (!facets.on_boundary(f)) return;
         for (int a = 0; a < functions; ++a)
           for (int j = 0; j < functions; ++j) // the polynomials beyond have none
@@ -172,7 +176,13 @@ Tractions equilibrated(const SpaceInput &in, const BoundaryTractions &boundary, 
         before += n * n;
       },
       total);
-  const BalanceStarsInSpace stars{
+  const auto begins = to_host(first);
+  constexpr LO batch = 2048; // stars at once: what bounds the work space
+  const auto end_of = [&](const LO from) { return std::min(nodes, from + batch); };
+  const auto begin_of = [&](const LO node) { return node < nodes ? begins(node) : total; };
+  std::size_t most = 0;
+  for (LO from = 0; from < nodes; from += batch) most = std::max(most, begin_of(end_of(from)) - begin_of(from));
+  BalanceStarsInSpace stars{
       in,
       boundary,
       Q,
@@ -180,25 +190,53 @@ Tractions equilibrated(const SpaceInput &in, const BoundaryTractions &boundary, 
       known_moments(in, boundary),
       around,
       first,
-      DeviceView<double *>(Kokkos::view_alloc("rpc::bound::matrix", Kokkos::WithoutInitializing), total),
+      0,
+      DeviceView<double *>(Kokkos::view_alloc("rpc::bound::matrix", Kokkos::WithoutInitializing), most),
       DeviceView<double **>("rpc::bound::sent", around.cell.extent(0), 3)};
-  Kokkos::parallel_for("rpc::bound::balance_stars", device_range(nodes), stars);
-  const Tractions t("rpc::bound::tractions", static_cast<std::size_t>(in.facets.size()) * 3 * functions);
+  for (; stars.from < nodes; stars.from += batch)
+    Kokkos::parallel_for("rpc::bound::balance_stars", device_range(end_of(stars.from) - stars.from), stars);
+  // Moments of functions at other ranks' vertices are fetched, and so are tractions of other ranks' facets.
+  const auto of_vertices = in.facets.of_vertices->served(), of_facets = in.facets.of_facets->served();
+  const DeviceView<double **> served("rpc::bound::served_moments", of_vertices.extent(0), 3);
+  Kokkos::parallel_for(
+      "rpc::bound::serve_moments", device_range(static_cast<LO>(of_vertices.extent(0))), KOKKOS_LAMBDA(const LO k) {
+        for (int i = 0; i < 3; ++i) served(k, i) = stars.moment(of_vertices(k, 0), of_vertices(k, 1), i);
+      });
+  const DeviceView<double **> fetched = in.facets.of_vertices->fetched(served);
+  const int per_facet = 3 * functions;
+  const Tractions t("rpc::bound::tractions", static_cast<std::size_t>(in.facets.size()) * per_facet);
   const auto from = in.tables.from_moments;
   const auto load = boundary.load;
+  const SpaceFacets facets = in.facets;
+  const SlotExchange::Rows row = in.facets.of_vertices->rows(), row_of_facet = in.facets.of_facets->rows();
   Kokkos::parallel_for(
       "rpc::bound::tractions_from_moments", device_range(in.facets.size()), KOKKOS_LAMBDA(const LO f) {
+        if (!facets.counts(f)) return;
         for (int i = 0; i < 3; ++i) {
-          const std::size_t at = static_cast<std::size_t>(f) * 3 * functions + i;
+          const std::size_t at = static_cast<std::size_t>(f) * per_facet + i;
           if (stars.is_known(f, i)) {
             for (int j = 0; j < functions; ++j) t(at + 3 * j) = load(f, j, i);
             continue;
           }
           for (int a = 0; a < functions; ++a) {
-            const double m = stars.moment(f, a, i);
+            const LO there = a < 3 ? row(f, a) : -1;
+            const double m = there >= 0 ? fetched(there, i) : stars.moment(f, a, i);
             for (int j = 0; j < functions; ++j) t(at + 3 * j) += from(j, a) * m;
           }
         }
+      });
+  const DeviceView<double **> served_tractions("rpc::bound::served_tractions", of_facets.extent(0), per_facet);
+  Kokkos::parallel_for(
+      "rpc::bound::serve_tractions", device_range(static_cast<LO>(of_facets.extent(0))), KOKKOS_LAMBDA(const LO k) {
+        for (int q = 0; q < per_facet; ++q)
+          served_tractions(k, q) = t(static_cast<std::size_t>(of_facets(k, 0)) * per_facet + q);
+      });
+  const DeviceView<double **> taken = in.facets.of_facets->fetched(served_tractions);
+  Kokkos::parallel_for(
+      "rpc::bound::take_tractions_in_space", device_range(in.facets.size()), KOKKOS_LAMBDA(const LO f) {
+        const LO there = row_of_facet(f, 0);
+        for (int q = 0; q < per_facet && there >= 0; ++q)
+          t(static_cast<std::size_t>(f) * per_facet + q) = taken(there, q);
       });
   Kokkos::fence();
   return t;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "space_facets.hpp"
 
+#include "galerkin.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/mesh/topology.hpp"
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace rpc::bound
@@ -27,37 +29,54 @@ int middle_of(const mesh::Element &element, const int a, const int b)
   return -1;
 }
 
-/// The rings on the host.
+/// The rings of this rank on the host.
 struct Rings {
   std::vector<std::size_t> first{0};
   std::vector<LO> cells, facets;
   std::vector<signed char> toward;
   std::vector<int> count;
+  std::vector<std::array<LO, 2>> edge;
 };
 
-/// Cells and facets around edges, each from a facet on the boundary if there is one, else from the cell with the lowest number.
+/// A facet and the number of its vertex off an edge: what rings begin with does not depend on how ranks number cells.
+struct RingStart {
+  LO facet = -1;
+  GO beyond = 0;
+  bool before(const RingStart &other) const { return other.facet < 0 || beyond < other.beyond; }
+};
+
+/// Cells and facets around edges, each from the facet with the lowest number, on the boundary if the ring has an end there.
+/// @param id  (local nodes) their numbers
+/// @return also whether the cells at some edge are no fan
 template <class OfCell, class Cell, class Nodes>
-Rings rings_of(const mesh::Entities &edges, const OfCell &of_cell, const Cell &cell, const Nodes &nodes)
+std::pair<Rings, bool> rings_of(const mesh::Topology &t, const LO owned_nodes, const std::vector<GO> &id,
+                                const OfCell &of_cell, const Cell &cell, const Nodes &nodes)
 {
+  const mesh::Entities &edges = t.edges;
   Rings rings;
-  int wrong = 0;
   for (int e = 0; e < edges.size(); ++e) {
-    const int n = edges.num_cells_at(e), a = edges.vertices[2 * e], b = edges.vertices[2 * e + 1];
-    const auto facets_at = [&](const LO c) { // both facets of a cell at the edge
-      std::array<LO, 2> at{-1, -1};
+    const int n = edges.num_cells_at(e);
+    LO a = edges.vertices[2 * static_cast<std::size_t>(e)], b = edges.vertices[2 * static_cast<std::size_t>(e) + 1];
+    if (id[b] < id[a]) std::swap(a, b);
+    if (a >= owned_nodes) continue;
+    // Both facets of a cell at the edge, each with the number of its vertex off the edge: facet s lies opposite vertex s.
+    const auto facets_at = [&](const LO c) {
+      std::array<RingStart, 2> at;
       int k = 0;
       for (int s = 0; s < 4 && k < 2; ++s)
-        if (nodes(c, s) != a && nodes(c, s) != b) at[k++] = of_cell(c, s);
+        if (nodes(c, s) != a && nodes(c, s) != b) at[k++] = {of_cell(c, s), id[nodes(c, s)]};
+      std::swap(at[0].beyond, at[1].beyond);
       return at;
     };
-    LO c = edges.cell(e, 0), f = facets_at(c)[0];
+    RingStart start, at_end;
     for (int k = 0; k < n; ++k)
-      for (const LO at : facets_at(edges.cell(e, k)))
-        if (cell(at, 1) < 0) {
-          c = edges.cell(e, k);
-          f = at;
-        }
-    const LO start = f;
+      for (const RingStart &at : facets_at(edges.cell(e, k))) {
+        if (at.before(start)) start = at;
+        if (cell(at.facet, 1) == SpaceFacets::none && at.before(at_end)) at_end = at;
+      }
+    LO f = at_end.facet >= 0 ? at_end.facet : start.facet;
+    LO c = cell(f, 0);
+    const LO begin = f;
     int k = 0;
     bool closed = false;
     for (; k < n && !closed; ++k) {
@@ -65,8 +84,8 @@ Rings rings_of(const mesh::Entities &edges, const OfCell &of_cell, const Cell &c
       rings.facets.push_back(f);
       rings.toward.push_back(cell(f, 0) == c ? 1 : -1);
       const auto both = facets_at(c);
-      f = both[0] == f ? both[1] : both[0];
-      closed = f == start;
+      f = both[0].facet == f ? both[1].facet : both[0].facet;
+      closed = f == begin;
       if (cell(f, 1) < 0) { // the other end
         ++k;
         rings.facets.push_back(f);
@@ -75,20 +94,16 @@ Rings rings_of(const mesh::Entities &edges, const OfCell &of_cell, const Cell &c
       }
       c = cell(f, 0) == c ? cell(f, 1) : cell(f, 0);
     }
-    if (k < n) ++wrong;
+    if (k < n) return {rings, true};
     rings.count.push_back(closed ? n : n + 1);
+    rings.edge.push_back({a, b});
     if (closed) { // its place stays free
       rings.facets.push_back(-1);
       rings.toward.push_back(0);
     }
     rings.first.push_back(rings.cells.size());
-    if (wrong) break;
   }
-  RPC_REQUIRE_CODE(
-      wrong == 0, ExitCode::bad_mesh,
-      "deck: \"Adapt->Error Bound\" = guaranteed does not cover bodies whose parts meet in an edge, and the "
-      "mesh has such edges. Write \"estimated\"");
-  return rings;
+  return {rings, false};
 }
 
 template <class View, class Values>
@@ -101,12 +116,81 @@ View view_of(const Values &values, const std::string &label)
   return view;
 }
 
+/// (local nodes) Numbers that do not depend on the ranks.
+std::vector<GO> ids_of(const fem::Discretization &d)
+{
+  const mesh::Mesh &mesh = *d.mesh;
+  const LO owned = mesh.num_owned_nodes();
+  HostView<double *> numbers("rpc::bound::numbers", owned); // whole ones below 2^53
+  for (LO n = 0; n < owned; ++n) numbers(n) = static_cast<double>(mesh.node_id(n));
+  std::vector<GO> id(mesh.num_local_nodes());
+  for (LO n = 0; n < owned; ++n) id[n] = mesh.node_id(n);
+  if (d.node_halo->is_empty()) return id;
+  const RCP<Vector> table = vector_of(numbers, mesh.owned_nodes);
+  const HostView<double *> all = host_copy(d.node_halo->at_columns(*table));
+  for (std::size_t n = owned; n < id.size(); ++n) id[n] = static_cast<GO>(all(n));
+  return id;
+}
+
+/// The cells at facets in their order, and which facet of these it is; collective.
+/// @param entity  (facets) number in the topology
+/// @param id  (local nodes)   @param nodes  (cells, nodes)   @param facet  (cells, 4)
+void order_cells(const mesh::Topology &t, const std::vector<int> &entity, const std::vector<GO> &id,
+                 const HostView<LO **> &nodes, const HostView<LO **> &facet, SpaceFacets &f)
+{
+  const LO count = t.facets.size();
+  const auto opposite = [&](const LO e, const int k) { // which vertex of its k-th cell lies opposite
+    const LO c = t.facets.cell(entity[e], k);
+    int s = 0;
+    while (facet(c, s) != e) ++s;
+    return s;
+  };
+  // What the rank of the facet sees opposite of it on both sides; -1: nothing.
+  const auto rows = f.of_facets->rows().of;
+  const auto served = to_host(f.of_facets->served());
+  const DeviceView<double **> seen("rpc::bound::opposite", served.extent(0), 2);
+  const auto there = Kokkos::create_mirror_view(seen);
+  const auto ids_at = [&](const LO e) {
+    std::array<GO, 2> both{-1, -1};
+    for (int k = 0; k < t.facets.num_cells_at(entity[e]); ++k)
+      both[k] = id[nodes(t.facets.cell(entity[e], k), opposite(e, k))];
+    return both;
+  };
+  for (std::size_t k = 0; k < served.extent(0); ++k)
+    for (int side = 0; side < 2; ++side) there(k, side) = static_cast<double>(ids_at(served(k, 0))[side]);
+  Kokkos::deep_copy(seen, there);
+  const auto fetched = to_host(f.of_facets->fetched(seen));
+  const auto row = to_host(rows);
+  const auto cell = mirror(f.cell);
+  const auto ordinal = mirror(f.ordinal);
+  const auto counts = mirror(f.counts);
+  for (LO e = 0; e < count; ++e) {
+    const LO from = row.extent(0) > 0 ? row(e, 0) : -1;
+    std::array<GO, 2> both = ids_at(e);
+    if (from >= 0) both = {static_cast<GO>(fetched(from, 0)), static_cast<GO>(fetched(from, 1))};
+    counts(e) = from < 0;
+    if (both[1] >= 0 && both[1] < both[0]) std::swap(both[0], both[1]);
+    cell(e, 0) = SpaceFacets::elsewhere;
+    cell(e, 1) = both[1] < 0 ? SpaceFacets::none : SpaceFacets::elsewhere;
+    ordinal(e, 0) = ordinal(e, 1) = -1;
+    for (int k = 0; k < t.facets.num_cells_at(entity[e]); ++k) {
+      const int s = opposite(e, k), side = id[nodes(t.facets.cell(entity[e], k), s)] == both[0] ? 0 : 1;
+      cell(e, side) = t.facets.cell(entity[e], k);
+      ordinal(e, side) = static_cast<signed char>(s);
+    }
+  }
+  Kokkos::deep_copy(f.cell, cell);
+  Kokkos::deep_copy(f.ordinal, ordinal);
+  Kokkos::deep_copy(f.counts, counts);
+}
+
 } // namespace
 
 SpaceFacets space_facets_of(const fem::Discretization &d)
 {
   const mesh::Mesh &mesh = *d.mesh;
   const mesh::Topology t = mesh::topology(mesh);
+  const std::vector<GO> id = ids_of(d);
   const mesh::Element &element = mesh.element;
   const int count = t.facets.size(), per_cell = element.num_nodes();
   const bool quadratic = element.order == 2;
@@ -118,31 +202,33 @@ SpaceFacets space_facets_of(const fem::Discretization &d)
   f.cell = DeviceView<LO *[2]>("rpc::bound::cell", count);
   f.ordinal = DeviceView<signed char *[2]>("rpc::bound::ordinal", count);
   f.node = DeviceView<LO **>("rpc::bound::node", count, quadratic ? 6 : 3);
-  const auto nodes = mirror(f.nodes_of_cell);
-  const auto of_cell = mirror(f.of_cell);
-  const auto cell = mirror(f.cell);
-  const auto node = mirror(f.node);
-  const auto ordinal = mirror(f.ordinal);
-  for (int e = 0; e < count; ++e)
-    for (int k = 0; k < 2; ++k) cell(e, k) = k < t.facets.num_cells_at(e) ? t.facets.cell(e, k) : -1;
+  f.counts = DeviceView<char *>("rpc::bound::counts", count);
+  const HostView<LO **> nodes("rpc::bound::nodes_of_cell", num_cells, per_cell),
+      of_cell("rpc::bound::of_cell", num_cells, 4), node("rpc::bound::node", count, quadratic ? 6 : 3);
+  std::vector<int> entity; // in the topology
+  std::vector<LO> number(count);
+  for (const bool outer : {true, false}) {
+    for (int e = 0; e < count; ++e)
+      if ((t.facets.num_cells_at(e) == 1) == outer) {
+        number[e] = static_cast<LO>(entity.size());
+        entity.push_back(e);
+      }
+    if (outer) f.num_outer = static_cast<LO>(entity.size());
+  }
   for (LO c = 0; c < num_cells; ++c) {
     std::array<int, 4> order{0, 1, 2, 3};
-    std::sort(order.begin(), order.end(), [&](const int x, const int y) { return given(c, x) < given(c, y); });
+    std::sort(order.begin(), order.end(), [&](const int x, const int y) { return id[given(c, x)] < id[given(c, y)]; });
     for (int v = 0; v < 4; ++v) nodes(c, v) = given(c, order[v]);
     if (quadratic)
       for (const auto &edge : element.edges())
         nodes(c, edge[2]) = given(c, middle_of(element, order[edge[0]], order[edge[1]]));
     for (int s = 0; s < 4; ++s) {
-      const LO facet = t.facets.of_cell[4 * static_cast<std::size_t>(c) + s];
+      const int at = t.facets.of_cell[4 * static_cast<std::size_t>(c) + s];
+      const LO facet = number[at];
+      const int *const of_facet = &t.facets.vertices[3 * static_cast<std::size_t>(at)];
       int opposite = 0;
-      while (std::find(&t.facets.vertices[3 * static_cast<std::size_t>(facet)],
-                       &t.facets.vertices[3 * static_cast<std::size_t>(facet)] + 3,
-                       nodes(c, opposite)) != &t.facets.vertices[3 * static_cast<std::size_t>(facet)] + 3)
-        ++opposite;
+      while (std::find(of_facet, of_facet + 3, nodes(c, opposite)) != of_facet + 3) ++opposite;
       of_cell(c, opposite) = facet;
-      const int side = cell(facet, 0) == c ? 0 : 1;
-      ordinal(facet, side) = static_cast<signed char>(opposite);
-      if (side == 1) continue;
       int own[3], k = 0;
       for (int v = 0; v < 4; ++v)
         if (v != opposite) own[k++] = v;
@@ -151,28 +237,41 @@ SpaceFacets space_facets_of(const fem::Discretization &d)
         node(facet, 3 + m) = nodes(c, middle_of(element, own[m == 1 ? 1 : 0], own[m == 0 ? 1 : 2]));
     }
   }
-  const Rings rings = rings_of(t.edges, of_cell, cell, nodes);
-  const int num_rings = t.edges.size();
+  f.of_facets = std::make_shared<const SlotExchange>(mesh, node, std::vector<int>{0});
+  f.of_vertices = std::make_shared<const SlotExchange>(mesh, node, std::vector<int>{0, 1, 2});
+  f.of_edges = std::make_shared<const SlotExchange>(mesh, node, std::vector<int>{0, 1, 0});
+  order_cells(t, entity, id, nodes, of_cell, f);
+  const auto [rings, wrong] = rings_of(t, mesh.num_owned_nodes(), id, of_cell, to_host(f.cell), nodes);
+  RPC_REQUIRE_CODE(
+      max_all(mesh.comm(), wrong ? 1 : 0) == 0, ExitCode::bad_mesh,
+      "deck: \"Adapt->Error Bound\" = guaranteed does not cover bodies whose parts meet in an edge, and the "
+      "mesh has such edges. Write \"estimated\"");
+  const std::size_t num_rings = rings.edge.size();
   f.edge = DeviceView<LO *[2]>("rpc::bound::edge", num_rings);
   f.ring = DeviceView<LO *[3]>("rpc::bound::ring", count);
   f.place = DeviceView<int *[3]>("rpc::bound::place", count);
   const auto edge = mirror(f.edge);
   const auto ring = mirror(f.ring);
   const auto place = mirror(f.place);
-  std::vector<signed char> found(count, 0);
-  for (int e = 0; e < num_rings; ++e) {
-    for (int v = 0; v < 2; ++v) edge(e, v) = t.edges.vertices[2 * static_cast<std::size_t>(e) + v];
+  Kokkos::deep_copy(ring, -1);
+  for (std::size_t e = 0; e < num_rings; ++e) {
+    for (int v = 0; v < 2; ++v) edge(e, v) = rings.edge[e][v];
     for (int k = 0; k < rings.count[e]; ++k) {
       const LO at = rings.facets[rings.first[e] + e + k];
-      ring(at, found[at]) = e;
-      place(at, found[at]++) = k;
+      const int own = edge(e, 0) == node(at, 1) ? 1 : (edge(e, 1) == node(at, 1) ? 0 : 2);
+      ring(at, own) = static_cast<LO>(e);
+      place(at, own) = k;
     }
   }
-  Kokkos::deep_copy(f.nodes_of_cell, nodes);
-  Kokkos::deep_copy(f.of_cell, of_cell);
-  Kokkos::deep_copy(f.cell, cell);
-  Kokkos::deep_copy(f.ordinal, ordinal);
-  Kokkos::deep_copy(f.node, node);
+  const auto copy = [](const auto &to, const auto &from) {
+    const auto host = mirror(to);
+    for (std::size_t i = 0; i < from.extent(0); ++i)
+      for (std::size_t j = 0; j < from.extent(1); ++j) host(i, j) = from(i, j);
+    Kokkos::deep_copy(to, host);
+  };
+  copy(f.nodes_of_cell, nodes);
+  copy(f.of_cell, of_cell);
+  copy(f.node, node);
   Kokkos::deep_copy(f.edge, edge);
   Kokkos::deep_copy(f.ring, ring);
   Kokkos::deep_copy(f.place, place);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -52,6 +53,7 @@ struct MeanMoments {
 
   KOKKOS_FUNCTION void operator()(const LO f) const
   {
+    if (!in.facets.is_whole(f)) return;
     const int both = in.facets.on_boundary(f) ? 1 : 2, nodes = static_cast<int>(in.facets.node.extent(1));
     double e[2][3], n[3];
     for (int k = 0; k < 2; ++k)
@@ -68,11 +70,13 @@ struct MeanMoments {
       const LO c = in.facets.cell(f, side);
       const int s = in.facets.ordinal(f, side);
       const AffineTetrahedron cell(in, c);
+      double D[3][3], sigma[3][3];
       for (int q = 0; q < static_cast<int>(in.tables.shape.extent(0)); ++q) {
-        double D[3][3], sigma[3][3];
-        gradient_in_space(
-            in, cell, c, u, [&](const int a, const int l) { return in.reference.side_gradient(s, q, a, l); }, D);
-        stress_of_gradient(in.lame(in.block(c), 0), in.lame(in.block(c), 1), D, sigma);
+        if (q == 0 || in.reference.degree > 1) { // C eps is constant with order 1
+          gradient_in_space(
+              in, cell, c, u, [&](const int a, const int l) { return in.reference.side_gradient(s, q, a, l); }, D);
+          stress_of_gradient(in.lame(in.block(c), 0), in.lame(in.block(c), 1), D, sigma);
+        }
         const double w = in.reference.side_weight(q) / both * (toward > 0 ? 1 : -1);
         for (int a = 0; a < nodes; ++a)
           for (int i = 0; i < 3; ++i)
@@ -163,7 +167,7 @@ FacetTables facet_tables(const int order)
   return t;
 }
 
-void find_kinds(SpaceInput &in)
+void find_kinds(SpaceInput &in, const Comm &comm)
 {
   constexpr double equal =
       1e-11; // of the body: what rounding may make of coordinates. Kinds steer the descent alone, not the bound
@@ -171,8 +175,14 @@ void find_kinds(SpaceInput &in)
   const auto cells = to_host(in.cells);
   const auto block = to_host(in.block);
   double size = 0;
-  for (std::size_t i = 0; i < x.extent(0); ++i)
-    for (int d = 0; d < 3; ++d) size = std::max(size, std::abs(x(i, d) - x(0, d)));
+  for (int d = 0; d < 3; ++d) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t i = 0; i < x.extent(0); ++i) {
+      low = std::min(low, x(i, d));
+      high = std::max(high, x(i, d));
+    }
+    size = std::max(size, max_all(comm, high) - min_all(comm, low));
+  }
   in.kind = DeviceView<int *>("rpc::bound::kind", in.num_cells());
   const auto kind = Kokkos::create_mirror_view(in.kind);
   std::map<std::array<long long, 10>, int> found;
@@ -194,14 +204,15 @@ void find_kinds(SpaceInput &in)
   Kokkos::deep_copy(in.example, example);
 }
 
-double norm_of_lifted_loads(const SpaceInput &in, const LiftedLoads &lifted, const DeviceView<double ***> &load)
+double norm_of_lifted_loads(const SpaceInput &in, const Comm &comm, const LiftedLoads &lifted,
+                            const DeviceView<double ***> &load)
 {
   double squared = 0;
-  Kokkos::parallel_reduce("rpc::bound::lifted_loads", device_range(in.num_cells()),
+  Kokkos::parallel_reduce("rpc::bound::lifted_loads", device_range(in.num_owned_cells),
                           LiftedInSpace{in, lifted, load, FacetPolynomials::count(3, in.reference.degree),
                                         FacetPolynomials::count(3, ReferenceStress::degree_of_loads_in_space)},
                           squared);
-  return std::sqrt(std::max(squared, 0.));
+  return std::sqrt(std::max(sum_all(comm, squared), 0.));
 }
 
 DeviceView<double ***> nodal_forces(const SpaceInput &in, const fem::Discretization &, const Vector &u)

@@ -44,6 +44,7 @@ struct SpaceInput {
   fem::BasisTable stress, load; ///< of the element, exact for the stiffness and for body forces
   DeviceView<int *> kind;       ///< (cells) kinds of congruent cells of one material
   DeviceView<LO *> example;     ///< (kinds) a cell of each
+  LO num_owned_cells = 0;       ///< the first ones
 
   LO num_cells() const { return static_cast<LO>(cells.extent(0)); }
   KOKKOS_INLINE_FUNCTION bool loaded() const { return force[0] != 0 || force[1] != 0 || force[2] != 0; }

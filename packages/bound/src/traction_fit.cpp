@@ -57,28 +57,26 @@ public:
     for (std::size_t i = 0; i < wanted.size(); ++i)
       if (!w.free[i]) wanted[i] = 0;
     add_weighted(wanted);
-    add_transposed(wanted, f_);
     for (std::size_t e = 0; e < c.facet.size(); ++e)
       for (int i = 0; i < per_facet_; ++i) add_facet(e, i);
+    beside_forces_ = f_;
+    add_transposed(wanted, f_);
     for (std::size_t k = coefficients_; k < n; ++k) f_[k] = f_[k - coefficients_];
   }
 
   /// y <- H x.
   void apply(const std::vector<double> &x, std::vector<double> &y) const
   {
-    std::vector<double> force(c_.force.size(), 0.);
-    for (std::size_t e = 0; e < c_.facet.size(); ++e)
-      for (int a = 0; a < per_facet_; ++a)
-        for (int j = 0; j < per_facet_; ++j)
-          if (w_.free[c_.point[e][a]]) force[c_.point[e][a]] += c_.length[e] * forces_[a][j] * whole(x, e, j);
-    add_weighted(force);
-    y.assign(x.size(), 0.);
-    add_transposed(force, y);
-    for (std::size_t e = 0; e < c_.facet.size(); ++e)
-      for (int i = 0; i < per_facet_; ++i)
-        for (int j = 0; j < per_facet_; ++j) y[e * per_facet_ + i] += mass_weight(e) * mass_[i][j] * whole(x, e, j);
-    for (std::size_t k = coefficients_; k < x.size(); ++k)
-      y[k] = y[k - coefficients_] + beyond_weight((k - coefficients_) / per_facet_) * x[k];
+    apply_to(x, std::vector<double>(c_.force.size(), 0.), y);
+  }
+  /// y <- H x - f. Forces of the whole side weigh much: their difference is taken before.
+  void gradient(const std::vector<double> &x, std::vector<double> &y) const
+  {
+    std::vector<double> without(c_.force.size(), 0.);
+    for (std::size_t i = 0; i < without.size(); ++i)
+      if (w_.free[i]) without[i] = -w_.force[i];
+    apply_to(x, without, y);
+    for (std::size_t k = 0; k < y.size(); ++k) y[k] -= beside_forces_[k % coefficients_];
   }
   /// The traction's coefficient.
   double whole(const std::vector<double> &x, const std::size_t e, const int j) const
@@ -93,6 +91,22 @@ public:
   const std::vector<double> &high() const { return high_bound_; }
 
 private:
+  /// y <- H x with more forces at the points.
+  void apply_to(const std::vector<double> &x, std::vector<double> force, std::vector<double> &y) const
+  {
+    for (std::size_t e = 0; e < c_.facet.size(); ++e)
+      for (int a = 0; a < per_facet_; ++a)
+        for (int j = 0; j < per_facet_; ++j)
+          if (w_.free[c_.point[e][a]]) force[c_.point[e][a]] += c_.length[e] * forces_[a][j] * whole(x, e, j);
+    add_weighted(force);
+    y.assign(x.size(), 0.);
+    add_transposed(force, y);
+    for (std::size_t e = 0; e < c_.facet.size(); ++e)
+      for (int i = 0; i < per_facet_; ++i)
+        for (int j = 0; j < per_facet_; ++j) y[e * per_facet_ + i] += mass_weight(e) * mass_[i][j] * whole(x, e, j);
+    for (std::size_t k = coefficients_; k < x.size(); ++k)
+      y[k] = y[k - coefficients_] + beyond_weight((k - coefficients_) / per_facet_) * x[k];
+  }
   void add_facet(const std::size_t e, const int i)
   {
     const std::size_t k = e * per_facet_ + i;
@@ -183,6 +197,7 @@ private:
   Table forces_, mass_; // of shape and Bernstein functions, of Bernstein functions
   double low_ = 0, span_ = 0;
   std::vector<int> intervals_;
+  std::vector<double> beside_forces_; // f without what the forces make of it
   std::vector<double> f_, scale_, start_, low_bound_, high_bound_;
 };
 

@@ -69,7 +69,8 @@ protected:
     in.tables = facet_tables(order);
     in.stress = d.reference.cell;
     in.load = d.reference.cell_load;
-    find_kinds(in);
+    find_kinds(in, mesh->comm());
+    in.num_owned_cells = mesh->num_owned_cells;
     boundary.known = DeviceView<char **>("known", in.facets.size(), 3);
     boundary.load = DeviceView<double ***>("load", in.facets.size(), FacetPolynomials::count(3, 3), 3);
     for (LO f = 0; f < in.facets.size(); ++f) { // clamped at x = 0, rollers at y = 0, held along z = 0
@@ -159,7 +160,7 @@ TEST_P(Body, RingsAreSymmetricAndAnswerWithTheInverseOfTheirEnergies)
   const Vector u(d.owned_dofs);
   const SpaceForms forms = cell_forms(in, u);
   const RingSolves rings(in, boundary, forms);
-  const DeviceView<double **> scratch("scratch", in.num_cells(), in.reference.tractions);
+  const DeviceView<float **> scratch("scratch", in.num_cells(), in.reference.tractions);
   const Tractions g = drawn(), h = drawn(), z("z", g.extent(0)), y("y", g.extent(0)), Az("Az", g.extent(0));
   rings.apply(g, z);
   rings.apply(h, y);
@@ -229,7 +230,7 @@ TEST_P(Body, TheEnergyOfTractionsIsThatOfTheirStress)
   in.force[2] = -0.7;
   const SpaceForms forms = cell_forms(in, u);
   const RingSolves rings(in, boundary, forms);
-  const DeviceView<double **> scratch("scratch", in.num_cells(), in.reference.tractions);
+  const DeviceView<float **> scratch("scratch", in.num_cells(), in.reference.tractions);
   const DeviceView<double *> of_cell("of_cell", in.num_cells());
   const Tractions g = drawn(), z("z", g.extent(0)), at("at", g.extent(0)), slope("slope", g.extent(0));
   rings.apply(g, z);
@@ -252,7 +253,7 @@ TEST_P(Body, TheEnergyOfTractionsIsThatOfTheirStress)
   }
   double energy[3];
   for (int k = 0; k < 3; ++k) {
-    const StressDifference left = stress_difference(in, forms, at, u, of_cell);
+    const StressDifference left = stress_difference(in, d.mesh->comm(), forms, at, u, of_cell);
     energy[k] = left.energy;
     EXPECT_LT(left.imbalance, 1e-12 * left.force);
     if (k == 1) add_up(in, forms, at, true, scratch, slope);

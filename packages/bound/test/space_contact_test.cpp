@@ -24,7 +24,6 @@ template <class Pressure>
 SpaceContact square(const int n, const double limit, const Pressure &pressure)
 {
   SpaceContact c;
-  c.limit = limit;
   c.modulus = 1000;
   c.normal = {0, 0, -1};
   c.force.assign((n + 1) * (n + 1), 0.);
@@ -38,6 +37,7 @@ SpaceContact square(const int n, const double limit, const Pressure &pressure)
         c.point.push_back(upper ? std::array<int, 3>{a, a + 1, b + 1} : std::array<int, 3>{a, b, b + 1});
         c.facet.push_back(static_cast<LO>(c.facet.size()));
         c.area.push_back(0.5);
+        c.limit_of.push_back({limit, limit, limit});
         c.pressure.push_back({});
         for (int v = 0; v < 3; ++v) {
           const auto &x = c.place[c.point.back()[v]];
@@ -51,14 +51,14 @@ SpaceContact square(const int n, const double limit, const Pressure &pressure)
 TEST(TriangleIntegrals, AreThoseOfHandAlgebra)
 {
   // v = 1 - 2 (y + z) in barycentric x, y, z: positive where x > 1/2, a quarter of the area, with the mean 1/3 there.
-  const TriangleIntegrals even = contact_integrals({1, -1, -1}, {2, 2, 2}, 6);
-  EXPECT_NEAR(even.yielding, 6. / 12, 1e-14);
+  const TriangleIntegrals even = contact_integrals({1, -1, -1}, {2, 2, 2}, {{6, 6, 6}});
+  EXPECT_NEAR(even.energy, 6. / 12, 1e-14);
   // (xi - p) v+ + p v-: 4/12, and 2 (v+ - v) with the mean of v -1/3.
   EXPECT_NEAR(even.gap, 4. / 12 + 2 * (1. / 12 + 1. / 3), 1e-14);
-  const TriangleIntegrals off = contact_integrals({-1, -1, -2}, {2, 2, 2}, inf);
-  EXPECT_EQ(off.yielding, 0);
+  const TriangleIntegrals off = contact_integrals({-1, -1, -2}, {2, 2, 2}, {{inf, inf, inf}});
+  EXPECT_EQ(off.energy, 0);
   EXPECT_NEAR(off.gap, 8. / 3, 1e-14);
-  EXPECT_EQ(contact_integrals({0, 0, 0}, {2, 1, 2}, inf).gap, 0);
+  EXPECT_EQ(contact_integrals({0, 0, 0}, {2, 1, 2}, {{inf, inf, inf}}).gap, 0);
 }
 
 TEST(TriangleIntegrals, AreThoseOfManyPoints)
@@ -77,10 +77,96 @@ TEST(TriangleIntegrals, AreThoseOfManyPoints)
       yielding += rule.weight[q] * 4 * std::max(depth, 0.);
       gap += rule.weight[q] * ((4 - pressure) * std::max(depth, 0.) + pressure * std::max(-depth, 0.));
     }
-    const TriangleIntegrals exact = contact_integrals(v, p, 4);
-    EXPECT_NEAR(exact.yielding, yielding, 1e-5);
+    const TriangleIntegrals exact = contact_integrals(v, p, {{4, 4, 4}});
+    EXPECT_NEAR(exact.energy, yielding, 1e-5);
     EXPECT_NEAR(exact.gap, gap, 1e-5);
   }
+}
+
+TEST(TriangleIntegrals, OfLawsAreThoseOfManyPoints)
+{
+  // Open, elastic, yielding and hardening parts, and a yield limit that varies with dents.
+  const FacetRule rule = refined(3, facet_rule(3, 2), 200);
+  const OfTriangle v = {0.3, -0.4, 0.1}, p = {6, 0, 3};
+  for (const TriangleLaw &law : {TriangleLaw{{4, 4, 4}, 0, 0.03}, TriangleLaw{{4, 5, 4.5}, 8, 0},
+                                 TriangleLaw{{4, 5, 4.5}, 8, 0.03}, TriangleLaw{{inf, inf, inf}, 0, 0.03}}) {
+    OfTriangle admissible = p;
+    for (int k = 0; k < 3 && law.rise == 0; ++k) admissible[k] = std::min(p[k], law.limit[k]);
+    double energy = 0, gap = 0;
+    for (int q = 0; q < rule.size(); ++q) {
+      double deep = 0, pressure = 0, limit = std::isinf(law.limit[0]) ? inf : 0;
+      for (int k = 0; k < 3; ++k) {
+        deep += v[k] * rule.point[q][k];
+        pressure += admissible[k] * rule.point[q][k];
+        if (!std::isinf(limit)) limit += law.limit[k] * rule.point[q][k];
+      }
+      // The foundation's springs give way by c times what they bear, dents take the rest.
+      double bears = std::max(deep, 0.) / std::max(law.spring, 1e-300), stored = 0;
+      if (bears > limit) {
+        const double dent = (deep - law.spring * limit) / (1 + law.spring * law.rise);
+        bears = limit + law.rise * dent;
+        stored = limit * dent + law.rise * dent * dent / 2;
+      }
+      stored += law.spring * bears * bears / 2;
+      const double beyond = law.rise > 0 ? std::max(0., pressure - limit) : 0;
+      energy += rule.weight[q] * stored;
+      gap += rule.weight[q] * (stored + law.spring * pressure * pressure / 2 - pressure * deep +
+                               (beyond > 0 ? beyond * beyond / (2 * law.rise) : 0));
+    }
+    const TriangleIntegrals exact = contact_integrals(v, admissible, law);
+    EXPECT_NEAR(exact.energy, energy, 1e-4 * energy);
+    EXPECT_NEAR(exact.gap, gap, 1e-4 * gap);
+  }
+}
+
+TEST(TriangleIntegrals, OfFrictionAreNoSmallerThanThoseOfManyPointsAndNear)
+{
+  const FacetRule rule = refined(3, facet_rule(3, 2), 100);
+  const std::array<OfTriangle, 2> e = {{{0.3, -0.4, 0.1}, {0.1, 0.2, -0.3}}}, q = {{{0.5, -1, 0}, {0, 0.4, -0.7}}};
+  const OfTriangle s = {1, 2, 1.5};
+  double energy = 0, work = 0;
+  for (int at = 0; at < rule.size(); ++at) {
+    double slip[2] = {0, 0}, limit = 0, along = 0;
+    for (int k = 0; k < 2; ++k) {
+      double traction = 0;
+      for (int v = 0; v < 3; ++v) {
+        slip[k] += e[k][v] * rule.point[at][v];
+        traction += q[k][v] * rule.point[at][v];
+      }
+      along += slip[k] * traction;
+    }
+    for (int v = 0; v < 3; ++v) limit += s[v] * rule.point[at][v];
+    energy += rule.weight[at] * limit * std::hypot(slip[0], slip[1]);
+    work += rule.weight[at] * along;
+  }
+  const TriangleIntegrals found = friction_integrals(e, q, s);
+  EXPECT_GE(found.energy, energy * (1 - 1e-6));
+  EXPECT_LT(found.energy, 1.02 * energy);
+  EXPECT_NEAR(found.gap, found.energy - work, 1e-6 * energy);
+}
+
+TEST(FittedFriction, KeepsWithinItsLimitsAndToTheTractionThatSlips)
+{
+  SpaceContact c = square(6, inf, [](const double, const double) { return 7.; });
+  c.friction.acts = true;
+  c.friction.free = c.free;
+  c.friction.limit_of.assign(c.facet.size(), {2, 2, 2});
+  for (std::size_t i = 0; i < c.place.size(); ++i) { // slips on the left side, in directions that turn
+    const double size = c.place[i][0] < 3 ? 2 : 1, angle = 0.1 * c.place[i][1];
+    c.friction.traction.push_back({size * std::cos(angle), size * std::sin(angle)});
+    for (int k = 0; k < 2; ++k) c.friction.force[k].push_back(c.force[i] / 7 * c.friction.traction[i][k]);
+  }
+  const std::vector<OfTriangle> none(c.facet.size(), OfTriangle{});
+  const AlongSide q = fitted_friction(c, {none, none});
+  double force = 0, wanted = 0;
+  for (std::size_t e = 0; e < c.facet.size(); ++e)
+    for (int v = 0; v < 3; ++v) {
+      EXPECT_LE(std::hypot(q[0][e][v], q[1][e][v]), 2 * (1 + 1e-12));
+      force += c.area[e] * q[0][e][v] / 3;
+    }
+  for (const double f : c.friction.force[0]) wanted += f;
+  EXPECT_NEAR(force, wanted, 1e-2 * wanted);
+  EXPECT_NEAR(std::hypot(q[0][0][0], q[1][0][0]), 2, 0.2);
 }
 
 TEST(FittedPressureInSpace, IsTheOneThatTheForcesComeFromWhereThatIsLinear)

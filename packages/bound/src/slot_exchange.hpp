@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "rpc/fem/discretization.hpp"
+
+#include <vector>
+
+namespace rpc::bound
+{
+
+/// Rows of numbers that belong to slots of facets in space, such as their edges. A slot belongs to the rank of one vertex of its facet, which has
+/// all cells around that; other ranks that have the facet get its numbers from there.
+class SlotExchange
+{
+public:
+  /// Collective.
+  /// @param node  (facets, nodes of one) vertices, in an order that all ranks agree on
+  /// @param vertex_of  (slots) the vertex whose rank has the numbers
+  SlotExchange(const mesh::Mesh &mesh, const HostView<LO **> &node, const std::vector<int> &vertex_of);
+
+  /// Where the numbers of slots are, for kernels.
+  struct Rows {
+    DeviceView<LO **> of; ///< (facets, slots) -1: this rank's own; empty: all are
+    KOKKOS_INLINE_FUNCTION LO operator()(const LO facet, const int slot) const
+    {
+      return of.extent(0) > 0 ? of(facet, slot) : -1;
+    }
+  };
+  const Rows &rows() const { return rows_; }
+  /// (served, 2) facet and slot of this rank's numbers that others ask for.
+  const DeviceView<LO *[2]> &served() const { return served_; }
+  /// (rows(), width) Collective. @param values  (served, width)
+  DeviceView<double **> fetched(const DeviceView<double **> &values) const;
+
+private:
+  /// Rows that go to a rank, or come from it, one after the other.
+  struct Share {
+    int rank;
+    std::size_t first, count;
+  };
+  template <class T>
+  std::vector<T> exchanged(const std::vector<T> &sent, const std::vector<Share> &to, const std::vector<Share> &from,
+                           std::size_t width) const;
+
+  RCP<const Comm> comm_;
+  Rows rows_;
+  DeviceView<LO *[2]> served_;
+  std::vector<Share> to_, from_;
+};
+
+} // namespace rpc::bound

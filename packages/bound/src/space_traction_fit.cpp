@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "space_traction_fit.hpp"
+
+#include "least_in_box.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rpc::bound
+{
+namespace
+{
+
+/// Means over a triangle of the products of two of its barycentric coordinates.
+constexpr double mean_product(const int i, const int j)
+{
+  return i == j ? 1. / 6 : 1. / 12;
+}
+
+/// The quadratic function of the fit: x . H x/2 - f . x. The unknowns are the tractions at the corners of facets, component by component; of a
+/// pressure with hardening once more as many, by which these exceed the yield limit.
+class FitInSpace
+{
+public:
+  FitInSpace(const SpaceContact &c, const WantedInSpace &w) : c_(c), w_(w), corners_(3 * c.facet.size())
+  {
+    double area = 0;
+    for (const double a : c.area) area += a;
+    size_ = std::sqrt(2 * area / static_cast<double>(c.area.size()));
+    list_hats();
+    const std::size_t blocks = w.components == 2 || w.rise > 0 ? 2 : 1;
+    for (auto *const of_unknowns : {&f_, &scale_, &start_, &low_bound_, &high_bound_})
+      of_unknowns->assign(blocks * corners_, 0.);
+    apply_or_compare(start_, true, f_);
+    for (double &f : f_) f = -f;
+    Values near;
+    for (int k = 0; k < w.components; ++k)
+      for (const OfTriangle &of_facet : w.near[k]) near[k].insert(near[k].end(), of_facet.begin(), of_facet.end());
+    reduce(near, start_);
+    for (std::size_t e = 0; e < c.facet.size(); ++e)
+      for (int i = 0; i < 3; ++i) set_bounds(e, i);
+  }
+
+  /// y <- H x.
+  void apply(const std::vector<double> &x, std::vector<double> &y) const { apply_or_compare(x, false, y); }
+  /// y <- H x - f. Forces of the whole side weigh much: their difference is taken before.
+  void gradient(const std::vector<double> &x, std::vector<double> &y) const { apply_or_compare(x, true, y); }
+  AlongSide tractions_of(const std::vector<double> &x) const
+  {
+    const Values t = expanded(x);
+    AlongSide all;
+    for (int k = 0; k < w_.components; ++k)
+      for (std::size_t e = 0; e < c_.facet.size(); ++e)
+        all[k].push_back({t[k][3 * e], t[k][3 * e + 1], t[k][3 * e + 2]});
+    return all;
+  }
+  const std::vector<double> &right_side() const { return f_; }
+  const std::vector<double> &scale() const { return scale_; } ///< that makes about 1 of the diagonal
+  const std::vector<double> &start() const { return start_; }
+  const std::vector<double> &low() const { return low_bound_; }
+  const std::vector<double> &high() const { return high_bound_; }
+
+private:
+  using Values = std::array<std::vector<double>, 2>; // (components; corners)
+
+  bool hardens() const { return w_.rise > 0; }
+  void apply_or_compare(const std::vector<double> &x, const bool compare, std::vector<double> &y) const
+  {
+    const Values t = expanded(x);
+    Values h;
+    for (int k = 0; k < w_.components; ++k) {
+      std::vector<double> force(w_.force[k].size(), 0.);
+      for (std::size_t i = 0; compare && i < force.size(); ++i) force[i] = w_.free[i] ? -w_.force[k][i] : 0;
+      for (std::size_t e = 0; e < c_.facet.size(); ++e)
+        for (int a = 0; a < 3; ++a)
+          for (int j = 0; j < 3; ++j)
+            if (w_.free[c_.point[e][a]]) force[c_.point[e][a]] += c_.area[e] * mean_product(a, j) * t[k][3 * e + j];
+      add_weighted(force);
+      h[k].assign(corners_, 0.);
+      add_transposed(force, h[k]);
+      for (std::size_t e = 0; e < c_.facet.size(); ++e)
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) {
+            h[k][3 * e + i] += mass_weight(e) * mean_product(i, j) * t[k][3 * e + j];
+            if (compare)
+              h[k][3 * e + i] -=
+                  mean_product(i, j) * (near_weight(e) * w_.near[k][e][j] + c_.area[e] * w_.depth[k][e][j]);
+          }
+    }
+    y.assign(x.size(), 0.);
+    reduce(h, y);
+    for (std::size_t q = 0; hardens() && q < corners_; ++q) y[corners_ + q] += beyond_weight(q / 3) * x[corners_ + q];
+  }
+  /// Tractions from the unknowns.
+  Values expanded(const std::vector<double> &x) const
+  {
+    Values t;
+    for (int k = 0; k < w_.components; ++k) t[k].resize(corners_);
+    for (std::size_t q = 0; q < corners_; ++q) {
+      if (w_.components == 1) {
+        t[0][q] = hardens() ? x[q] + x[corners_ + q] : x[q];
+        continue;
+      }
+      const auto &d = w_.toward[q / 3][q % 3];
+      t[0][q] = d[0] * x[q] - d[1] * x[corners_ + q];
+      t[1][q] = d[1] * x[q] + d[0] * x[corners_ + q];
+    }
+    return t;
+  }
+  /// The transpose.
+  void reduce(const Values &t, std::vector<double> &x) const
+  {
+    for (std::size_t q = 0; q < corners_; ++q) {
+      if (w_.components == 1) {
+        x[q] = t[0][q];
+        if (hardens()) x[corners_ + q] = t[0][q];
+        continue;
+      }
+      const auto &d = w_.toward[q / 3][q % 3];
+      x[q] = d[0] * t[0][q] + d[1] * t[1][q];
+      x[corners_ + q] = d[0] * t[1][q] - d[1] * t[0][q];
+    }
+  }
+  void set_bounds(const std::size_t e, const int i)
+  {
+    double own = 0;
+    for (int j = 0; j < 3; ++j) own += mean_product(i, j) * mean_product(i, j);
+    const double diagonal = c_.area[e] * c_.area[e] * own / (c_.modulus * size_) + mass_weight(e) * mean_product(i, i);
+    for (int k = 0; k < w_.components; ++k) {
+      const std::size_t at = k * corners_ + 3 * e + i;
+      low_bound_[at] = w_.low[k][e][i];
+      high_bound_[at] = w_.high[k][e][i];
+      scale_[at] = 1 / std::sqrt(diagonal);
+    }
+    if (hardens()) {
+      const std::size_t at = corners_ + 3 * e + i;
+      const double limit = w_.high[0][e][i];
+      start_[at] = std::max(0., start_[at] - limit);
+      high_bound_[at] = std::isinf(limit) ? 0 : std::numeric_limits<double>::infinity();
+      scale_[at] = 1 / std::sqrt(diagonal + beyond_weight(e));
+    }
+    for (std::size_t at = 3 * e + i; at < start_.size(); at += corners_)
+      start_[at] = std::clamp(start_[at], low_bound_[at], high_bound_[at]);
+  }
+  double near_weight(const std::size_t e) const
+  {
+    constexpr double share = 0.1; // how much the pressure at the nodes counts beside their forces
+    return share * c_.area[e] * c_.area[e] / (c_.modulus * size_);
+  }
+  /// With the energy c p^2/2 of the foundation's springs.
+  double mass_weight(const std::size_t e) const { return near_weight(e) + w_.spring * c_.area[e]; }
+  /// Of the squares of what pressures at the corners exceed the yield limit by: (p - xi)^2/(2 H) is convex, so that its integral is no larger.
+  double beyond_weight(const std::size_t e) const { return c_.area[e] / (3 * w_.rise); }
+  /// Squares of intervals of hats on all levels, from about four nodes for each down to one for all.
+  void list_hats()
+  {
+    std::array<double, 2> high{};
+    int count = 0;
+    for (int d = 0; d < 2; ++d) {
+      low_[d] = std::numeric_limits<double>::infinity();
+      high[d] = -low_[d];
+    }
+    for (std::size_t i = 0; i < c_.place.size(); ++i) {
+      if (!w_.free[i]) continue;
+      ++count;
+      for (int d = 0; d < 2; ++d) {
+        low_[d] = std::min(low_[d], c_.place[i][d]);
+        high[d] = std::max(high[d], c_.place[i][d]);
+      }
+    }
+    for (int d = 0; d < 2; ++d) span_[d] = high[d] - low_[d];
+    if (!(span_[0] > 0 && span_[1] > 0)) return;
+    for (int n = static_cast<int>(std::sqrt(count)) / 2; n >= 1; n /= 2) intervals_.push_back(n);
+  }
+  /// force <- S force, with S the sum over all levels of the products with hats, and the nodes themselves.
+  void add_weighted(std::vector<double> &force) const
+  {
+    constexpr double of_all = 100; // of the force and moments of the whole side, squared
+    std::vector<double> sum(force), hat;
+    for (const int n : intervals_) {
+      hat.assign(static_cast<std::size_t>(n + 1) * (n + 1), 0.);
+      const auto at = [&](const std::size_t i, std::array<double, 4> &weight) { // of four hats from the first one on
+        int k[2];
+        double x[2];
+        for (int d = 0; d < 2; ++d) {
+          x[d] = n * (c_.place[i][d] - low_[d]) / span_[d];
+          k[d] = std::clamp(static_cast<int>(x[d]), 0, n - 1);
+          x[d] -= k[d];
+        }
+        weight = {(1 - x[0]) * (1 - x[1]), (1 - x[0]) * x[1], x[0] * (1 - x[1]), x[0] * x[1]};
+        return static_cast<std::size_t>(k[0]) * (n + 1) + k[1];
+      };
+      const std::size_t step[4] = {0, 1, static_cast<std::size_t>(n) + 1, static_cast<std::size_t>(n) + 2};
+      std::array<double, 4> weight{};
+      for (std::size_t i = 0; i < force.size(); ++i) {
+        if (!w_.free[i]) continue;
+        const std::size_t first = at(i, weight);
+        for (int k = 0; k < 4; ++k) hat[first + step[k]] += weight[k] * force[i];
+      }
+      for (std::size_t i = 0; i < force.size(); ++i) {
+        if (!w_.free[i]) continue;
+        const std::size_t first = at(i, weight);
+        for (int k = 0; k < 4; ++k) sum[i] += (n == 1 ? of_all : 1) * weight[k] * hat[first + step[k]];
+      }
+    }
+    force = sum;
+  }
+  /// y += what the tractions do to forces at the points, transposed.
+  void add_transposed(const std::vector<double> &force, std::vector<double> &y) const
+  {
+    for (std::size_t e = 0; e < c_.facet.size(); ++e)
+      for (int a = 0; a < 3; ++a)
+        for (int j = 0; j < 3; ++j)
+          if (w_.free[c_.point[e][a]])
+            y[3 * e + j] += c_.area[e] * mean_product(a, j) * force[c_.point[e][a]] / (c_.modulus * size_);
+  }
+
+  const SpaceContact &c_;
+  const WantedInSpace &w_;
+  std::size_t corners_; // of facets
+  double size_ = 0;     // of facets [m]
+  std::array<double, 2> low_{}, span_{};
+  std::vector<int> intervals_;
+  std::vector<double> f_, scale_, start_, low_bound_, high_bound_;
+};
+
+} // namespace
+
+AlongSide fitted_in_space(const SpaceContact &c, const WantedInSpace &wanted)
+{
+  const FitInSpace fit(c, wanted);
+  return fit.tractions_of(least_in_box(fit));
+}
+
+} // namespace rpc::bound
