@@ -2,6 +2,7 @@
 #include "report.hpp"
 
 #include "output/result_list.hpp"
+#include "rpc/contact/contact_patches.hpp"
 #include "rpc/core/point.hpp"
 #include "rpc/core/quantity.hpp"
 
@@ -319,6 +320,25 @@ void print_accuracy(std::ostream &out, const Scene &scene, const Solution &s)
     print_text(out, "errors", "of numbers without an error bar are not estimated");
 }
 
+/// How contact is spread over sides whose foundations have details of their own, as rough surfaces do. Collective.
+void print_patches(std::ostream &out, const Scene &scene, const Solution &s, const ResultScope &scope)
+{
+  const auto &sides = scene.model.contact;
+  const auto is_detailed = [](const auto &side) { return side.obstacle.surface && side.obstacle.surface->detail; };
+  if (std::none_of(sides.begin(), sides.end(), is_detailed)) return;
+  const mesh::Mesh &mesh = *s.discretization.mesh;
+  const auto patches = contact::contact_patches(mesh, contact::contact_sides(mesh, sides), s.step.contact, s.contact);
+  for (std::size_t k = 0; k < patches.size(); ++k) {
+    if (!is_detailed(sides[k])) continue;
+    const auto in = [&](const Unit &unit) { return " " + scope.units.of(unit, scope.per_length); };
+    const std::size_t count = patches[k].size.size();
+    std::string text = std::to_string(count);
+    if (count > 0) text += ", the largest " + number_text("%.6g", patches[k].size.front()) + in(unit::extent);
+    text += "; mean gap " + number_text("%.6g", patches[k].mean_gap) + in(unit::length);
+    print_text(out, sides.size() > 1 ? "patches on \"" + sides[k].name_in_results() + "\"" : "patches", text);
+  }
+}
+
 /// Numbers of a solution.
 void print_results(std::ostream &out, const Scene &scene, const Solution &s, const std::vector<std::string> &notes)
 {
@@ -331,6 +351,7 @@ void print_results(std::ostream &out, const Scene &scene, const Solution &s, con
       text += (text.empty() ? "" : "; ") + line.heading + ' ' + line.numbers;
     print_text(out, "on \"" + sides[k].name_in_results() + "\"", text);
   }
+  print_patches(out, scene, s, scope);
   print_accuracy(out, scene, s);
   if (!sides.empty()) print_text(out, "mesh misses", missed(scene, s, scope));
   for (const auto &note : notes) print_text(out, "note", note);

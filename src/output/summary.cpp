@@ -4,6 +4,7 @@
 #include "output/quantities.hpp"
 #include "output/result_list.hpp"
 #include "rpc/analysis/side_displacements.hpp"
+#include "rpc/contact/contact_patches.hpp"
 
 #include <cmath>
 
@@ -32,6 +33,28 @@ nlohmann::ordered_json place_json(const Scene &scene, const contact::PlaceBetwee
           {"place", vector_json(at.place, dim)},
           {"width", at.width},
           {"facet", at.facet}};
+}
+
+/// How contact is spread over each contact side. Collective.
+nlohmann::ordered_json patches_json(const Scene &scene, const Solution &s)
+{
+  auto json = nlohmann::ordered_json::object();
+  if (!s.has_results()) return json;
+  const mesh::Mesh &mesh = *s.discretization.mesh;
+  const auto patches =
+      contact::contact_patches(mesh, contact::contact_sides(mesh, scene.model.contact), s.step.contact, s.contact);
+  for (std::size_t k = 0; k < patches.size(); ++k) {
+    const contact::ContactPatches &of_side = patches[k];
+    std::vector<double> ends;
+    for (int bin = 0; bin <= contact::ContactPatches::bins; ++bin)
+      ends.push_back(of_side.max_pressure * bin / contact::ContactPatches::bins);
+    json[scene.model.contact[k].name_in_results()] = {
+        {"mean_gap", of_side.mean_gap},
+        {"count", of_side.size.size()},
+        {"sizes", of_side.size},
+        {"pressure_histogram", {{"ends", ends}, {"sizes", of_side.size_by_pressure}}}};
+  }
+  return json;
 }
 
 /// Names of the units of this file's numbers.
@@ -236,6 +259,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["contact_sides"] = nlohmann::ordered_json::object();
   for (std::size_t k = 0; k < scene.model.contact.size(); ++k)
     add_sums(json["contact_sides"][scene.model.contact[k].name_in_results()], s.contact.sides[k], scope, mesh.dim());
+  json["contact_patches"] = patches_json(scene, s);
   auto &between = json["between_nodes"] = nlohmann::ordered_json::object();
   if (s.contact.between.deepest.depth > 0)
     between["deepest"] = place_json(scene, s.contact.between.deepest, mesh.dim());
