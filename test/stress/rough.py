@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Random rough surfaces, pressed from the first touch to nearly full contact, let go, and slid.
 
-    python3 rough.py --rpc=build/rpc [--seed=1] [--surfaces=12] [--cells=64,64,16] [--kinds=mirrored,pressed,forced,released,slid] [--only=K] [--jobs=2]
-                     [--keep=DIR]
+    python3 rough.py --rpc=build/rpc [--seed=1] [--surfaces=12] [--cells=64,64,16] [--kinds=mirrored,pressed,forced,released,slid] [--first=0]
+                     [--only=K] [--jobs=2] [--keep=DIR]
 
 Surface K is self-affine, of the seed seed + K. The kinds take turns; E* = 1 but for the kinds with a Poisson's ratio of their own.
 
@@ -83,6 +83,8 @@ def drawn(kind, seed, number, cells):
              "friction": draw.choice([0.1, 0.3, 0.6, 1.0]), "direction": draw.uniform(0, 2 * math.pi), "times": draw.choice([1.02, 1.2, 2.0, 5.0, math.inf])}
     if kind == "released" and math.isinf(scene["share"]):
         scene["share"] = 0.3
+    for other in {"forced": ("share",), "slid": ("times",)}.get(kind, ("times",)) + (() if kind == "slid" else ("friction", "direction")):
+        del scene[other]
     lowest = draw.choice([1, 2, 4])
     surface = {"Points": cells[0], "Hurst Exponent": draw.choice([0.3, 0.8, 1.0]), "Lowest Wave Number": lowest,
                "Highest Wave Number": max(lowest, cells[0] // draw.choice([4, 8])), "RMS Slope": scene["slope"]}
@@ -93,10 +95,11 @@ def periodic_deck(kind, scene, cells, heights, file):
     """A periodic box on a map. @param heights  the lowest and the highest [m]"""
     nu, depth, slope = scene["nu"], scene["depth"], scene["slope"]
     range_of_heights = heights[1] - heights[0]
-    way = range_of_heights + (1.5 * slope * depth if math.isinf(scene["share"]) else 0)
+    share = scene.get("share", math.inf)
+    way = range_of_heights + (1.5 * slope * depth if math.isinf(share) else 0)
     law, far = {}, {"X": 0.0, "Y": 0.0}
-    if not math.isinf(scene["share"]) and kind != "forced":
-        law["Yield Stress"] = scene["share"] * slope
+    if not math.isinf(share):
+        law["Yield Stress"] = share * slope
     contact = {"Side": "back", **({} if scene["own normals"] else {"Normal": "0, 0, -1"})}
     loads = {}
     if kind == "forced":
@@ -183,7 +186,8 @@ def main():
     parser.add_argument("--surfaces", type=int, default=12)
     parser.add_argument("--cells", default="64,64,16", help="along both directions of the side, the same number, and through the block")
     parser.add_argument("--kinds", default=",".join(KINDS), help="that take turns")
-    parser.add_argument("--only", type=int)
+    parser.add_argument("--first", type=int, default=0, help="number of the first surface")
+    parser.add_argument("--only", type=int, help="number of the only surface")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--keep", help="folder for the files of all surfaces")
     options = parser.parse_args()
@@ -192,7 +196,7 @@ def main():
     kinds = options.kinds.split(",")
     if unknown := [kind for kind in kinds if kind not in KINDS]:
         parser.error(f"--kinds: there is no kind {unknown[0]}; there are {', '.join(KINDS)}")
-    numbers = range(options.surfaces) if options.only is None else [options.only]
+    numbers = range(options.first, options.first + options.surfaces) if options.only is None else [options.only]
     with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
         for number, (complaint, what, newton) in zip(numbers, pool.map(lambda k: judge(rpc, options.seed, k, cells, kinds, options.keep), numbers)):
             failed += complaint is not None
