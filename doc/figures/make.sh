@@ -18,7 +18,7 @@ done
 for law in "Yield Stress=20" Hardening=200 Stiffness=1000; do
   run "$input/indent.xml" --output="$work/${law%%[ =]*}" --set="Contact->$law"
 done
-for deck in block track block_adaptive shear ball_friction; do
+for deck in block track block_adaptive shear ball_friction rough; do
   run "$input/$deck.xml"
 done
 

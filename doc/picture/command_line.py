@@ -14,6 +14,7 @@ import figure
 import history
 import output
 import style
+import summary
 import surface
 import table
 from result import PictureError, Result, first_line
@@ -23,7 +24,7 @@ EPILOG = """Fields of the contact are drawn on the contact side, in the plane as
 von Mises stress. Default: contact_pressure if there is contact, else von_mises. cell_size shows where a mesh is fine. RESULT.e stands for
 all files of the run, RESULT.e-s0002 and so on too: one for each mesh of its load steps. RESULT.contact.csv gives the pressure, the friction
 and the state along the contact sides; RESULT.history.csv, of load steps, force against displacement and the energies, or with --columns any
-of its columns; RESULT.points.csv results along lines, and at points over the time; RESULT.json the estimated error over the adapted meshes. Several tables of one kind, each as FILE or LABEL=FILE, go into one picture. doc/pictures.md has examples."""
+of its columns; RESULT.points.csv results along lines, and at points over the time; RESULT.json the estimated error over the adapted meshes, or where none were adapted a histogram of the contact pressure. Several tables of one kind, each as FILE or LABEL=FILE, go into one picture. doc/pictures.md has examples."""
 OF_BODIES = ("field", "scale", "time", "window", "cut", "view")
 OF_TABLES = ("columns", "over", "range", "centre")
 OF_POINTS = ".points.csv"
@@ -160,7 +161,7 @@ def options(arguments):
 def output_beside(path):
     """Where a picture goes by default; that of RESULT.json not where that of RESULT.e goes."""
     stem, ending = os.path.splitext(path)
-    return stem + (".adaptation.png" if ending.lower() == ".json" else ".png")
+    return stem + (f".{summary.kind_of(path)}.png" if ending.lower() == ".json" else ".png")
 
 
 def are_tables(found):

@@ -16,7 +16,7 @@ WIDTH, PANEL, FLAT = 7.5, 2.6, 0.45  # inches: of the picture; height of a panel
 MOST_PANELS = 8
 MOST_MARKERS = 60  # of a curve that has them
 LOGARITHMIC = ("dofs", "relative_estimate")
-FROM_ZERO = ("pressure", "friction", "max_pressure", "friction_used")
+FROM_ZERO = ("pressure", "share_of_contact", "friction", "max_pressure", "friction_used")
 
 
 def compose(tables, columns, over, span, style, centre=None, time=None):
@@ -72,23 +72,23 @@ def compose(tables, columns, over, span, style, centre=None, time=None):
 
 def chosen_columns(tables):
     """Of contact sides the pressure, or the dents where those alone are left, the friction, the state and what sticks; of load steps the contact force and the largest pressure; of adapted meshes
-    the estimated error; at points the contact pressure and von Mises' stress."""
+    the estimated error, of one mesh the shares of contact by pressure; at points the contact pressure and von Mises' stress."""
     names = [name for name in tables[0].names() if all(name in table.columns for table in tables)]
     if tables[0].kind == "contact":
         left = "dent" in names and any(table.columns["dent"].any() for table in tables) and not any(table.columns["pressure"].any() for table in tables)
         return [name for name in ("dent" if left else "pressure", "friction", "state", "friction_state") if name in names]
     if tables[0].kind == "points":
         return point_curves.chosen_columns(tables)
-    if tables[0].kind == "adaptation":
-        return ["relative_estimate"]
+    if tables[0].kind in ("adaptation", "patches"):
+        return ["relative_estimate" if tables[0].kind == "adaptation" else "share_of_contact"]
     return [name for name in names if name.startswith("contact_force_")] + [name for name in ("max_pressure",) if name in names]
 
 
 def chosen_axis(table):
     """In the plane the length along the surface, or x where there are several; in space the radius; of load steps the time; of
-    adapted meshes the number of degrees of freedom."""
+    adapted meshes the number of degrees of freedom; of shares of contact the pressure."""
     if table.kind != "contact":
-        return "time" if table.kind == "history" else "dofs"
+        return {"history": "time", "patches": "pressure"}.get(table.kind, "dofs")
     if "s" not in table.columns:
         return RADIUS
     return "s" if len(parts(table)) == 1 else "x"
@@ -141,6 +141,8 @@ def add_curve(panel, table, x, name, words, look):
             style |= {"linestyle": "", "markersize": 2.5}
         elif words:
             style |= {"drawstyle": "steps-mid", "marker": ""}
+        elif table.kind == "patches":
+            style |= {"marker": ""}
         elif size > MOST_MARKERS and look["marker"] == ".":
             style |= {"marker": ""}
         else:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads of a run's summary, RESULT.json, what it tells of the meshes that it has adapted."""
+"""Reads of a run's summary, RESULT.json, what it tells of the meshes that it has adapted, or of how pressures are spread over the contact."""
 import json
 
 import numpy as np
@@ -9,8 +9,8 @@ from result import PictureError
 UNITS = {"relative_estimate": "", "energy_J": "energy", "max_pressure": "stress", "max_penetration": "length", "contact_length": "length"}
 
 
-def meshes(path):
-    """({column: (meshes,) numbers}, {column: unit}, target of the relative estimate) of the meshes, from the first to the last."""
+def read(path):
+    """The summary."""
     try:
         with open(path, encoding="utf-8") as file:
             told = json.load(file)
@@ -21,8 +21,39 @@ def meshes(path):
         raise PictureError(f'"{path}" is no JSON: {str(error).splitlines()[0]}') from None
     if not isinstance(told, dict) or "rpc_version" not in told:
         raise PictureError(f'"{path}" is not a summary of rpc')
+    return told
+
+
+def kind_of(path):
+    """What of a summary is drawn: "patches" where no meshes were adapted and there is contact, else "adaptation"."""
+    try:
+        told = read(path)
+    except PictureError:
+        return "adaptation"  # which says what is wrong
+    return "patches" if "adaptation" not in told and told.get("contact_patches") else "adaptation"
+
+
+def spread(path):
+    """({column: numbers}, {column: unit}) of the histogram of pressures, all contact sides together, as a line of steps."""
+    told = read(path)
+    try:
+        histograms = [side["pressure_histogram"] for side in told["contact_patches"].values()]
+        ends = max((np.array(one["ends"], dtype=float) for one in histograms), key=lambda each: each[-1])
+        sizes = np.zeros(len(ends) - 1)
+        for one in histograms:  # of a side with lower pressures in the bins of that with the highest
+            middle = 0.5 * (np.array(one["ends"][1:], dtype=float) + np.array(one["ends"][:-1], dtype=float))
+            np.add.at(sizes, np.clip(np.searchsorted(ends, middle) - 1, 0, len(sizes) - 1), np.array(one["sizes"], dtype=float))
+        share = np.repeat(sizes / max(sizes.sum(), np.finfo(float).tiny), 2)
+        return {"pressure": np.repeat(ends, 2)[1:-1], "share_of_contact": share}, {"pressure": told["units"]["stress"]}
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError):
+        raise PictureError(f'"{path}" is damaged: "contact_patches" is not what rpc writes; remedy: run rpc again') from None
+
+
+def meshes(path):
+    """({column: (meshes,) numbers}, {column: unit}, target of the relative estimate) of the meshes, from the first to the last."""
+    told = read(path)
     if "adaptation" not in told:
-        raise PictureError(f'"{path}" tells of no adapted meshes; rpc adapts them with Adapt->Target Relative Error')
+        raise PictureError(f'"{path}" tells of no adapted meshes and no contact; rpc adapts meshes with Adapt->Target Relative Error')
     try:
         cycles, target = told["adaptation"]["cycles"], float(told["adaptation"]["target"])
         columns = {name: np.array([number(cycle[name]) for cycle in cycles]) for name in cycles[0] if not isinstance(cycles[0][name], list)}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Reads the tables that rpc writes: RESULT.contact.csv along the contact sides, RESULT.history.csv of load steps, RESULT.points.csv at points,
-and of RESULT.json that of the adapted meshes."""
+and of RESULT.json that of the adapted meshes, or of the pressures' histogram."""
 import csv
 import os
 import re
@@ -12,7 +12,7 @@ from result import PictureError, suggestion
 
 HEADING = re.compile(r"(.*?)(?: \[([^\]]*)\])?", re.DOTALL)  # name and unit of a column
 KINDS = {"contact": ("pressure", "state", "u_nu"), "history": ("time", "work"), "points": ("time", "name", "number", "off")}  # columns that tell them
-NAMES = {"contact": "*.contact.csv", "history": "*.history.csv", "points": "*.points.csv", "adaptation": "*.json"}
+NAMES = {"contact": "*.contact.csv", "history": "*.history.csv", "points": "*.points.csv", "adaptation": "*.json of adapted meshes", "patches": "*.json"}
 WORDS = ("state", "friction_state", "side", "reason", "name")  # columns that have no numbers
 ORDERED = ("none", "open", "closed", "yielding", "unseen", "sticks", "slips")  # of categories
 MOST_CATEGORIES = 12
@@ -26,7 +26,7 @@ MEANING = [
     ("u_t_([xyz])", "displacement along the side in {1}", "m"), ("force_([xyz])", "nodal force in {1}", "{force}"),
     ("friction_used", "friction over what it can be", ""), ("time", "t", ""), ("contact_force_([xyz])", "contact force in {1}", "{force}"),
     (".*_displacement_[xyz]|max_(displacement|penetration|dent|slip)", "{0}", "m"), (".*_reaction_[xyz]", "{0}", "{force}"),
-    ("energy_J", "energy", "{energy}"), ("relative_estimate", "estimated relative error", ""), ("dofs", "degrees of freedom", ""),
+    ("energy_J", "energy", "{energy}"), ("relative_estimate", "estimated relative error", ""), ("dofs", "degrees of freedom", ""), ("share_of_contact", "share of what is in contact", ""),
     ("max_(pressure|shear|von_mises)", "{0}", "Pa"), (".*_length", "{0}", "m"), (".*_area", "{0}", "m^2"),
     ("dent_volume", "{0}", "{volume}"), ("seconds", "wall-clock time", "s"),
     ("work|dissipated_by_friction|.*_energy|energy_imbalance", "{0}", "{energy}")]
@@ -35,7 +35,7 @@ MEANING = [
 class Table:
     """A file's columns, {name: (rows,) numbers or texts}, and their units where the headings have some, {name: unit}.
 
-    kind    one of KINDS, or "adaptation"
+    kind    one of KINDS, "adaptation" or "patches"
     label   what a legend says of it
     target  of adapted meshes: that of the relative estimate; else None
     """
@@ -43,7 +43,11 @@ class Table:
     def __init__(self, path, label=""):
         self.path, self.label, self.target = path, label, None
         if path.lower().endswith(".json"):
-            self.kind, (self.columns, self.units, self.target) = "adaptation", summary.meshes(path)
+            self.kind = summary.kind_of(path)
+            if self.kind == "patches":
+                self.columns, self.units = summary.spread(path)
+            else:
+                self.columns, self.units, self.target = summary.meshes(path)
             return
         names, rows = self._read()
         self.kind = next((kind for kind, needed in KINDS.items() if set(needed) <= set(names)), None)

@@ -197,6 +197,15 @@ class Diagrams(RpcTestCase):
         self.assertEqual((axes.get_ylabel(), axes.get_xlabel()), ("contact force in y [N/mm]", "wall-clock time [s]"))
         self.assertEqual(self.picture("a.json"), (0, "wrote a.adaptation.png\n", ""))
 
+    def test_pressures_of_a_rough_contact(self):
+        told = {"rpc_version": "1", "units": {"stress": "MPa"},
+                "contact_patches": {"low": {"pressure_histogram": {"ends": [0, 1, 2], "sizes": [3, 1]}}, "high": {"pressure_histogram": {"ends": [0, 2, 4], "sizes": [1, 5]}}}}
+        (self.folder / "a.json").write_text(json.dumps(told))
+        (axes,) = self.compose([Table(str(self.folder / "a.json"))]).axes
+        self.assertEqual((axes.get_ylabel(), axes.get_xlabel()), ("share of what is in contact", "contact pressure [MPa]"))
+        self.assertEqual(axes.lines[0].get_xydata().tolist(), [[0, 0.5], [2, 0.5], [2, 0.5], [4, 0.5]])  # all of "low" is in the first bin of "high"
+        self.assertEqual(self.picture("a.json"), (0, "wrote a.patches.png\n", ""))
+
     def test_of_the_program(self):
         self.rpc("--input=shear.xml", "--set=Mesh->Cells={12, 6}", "--output=out")
         self.rpc("--input=beam_adaptive.xml", "--set=Adapt->Target Relative Error=0.02", "--output=out")
@@ -327,7 +336,8 @@ class Refusals(RpcTestCase):
             summary_file(self.folder / f"{name}.json", **told)
             self.expect_refusal_of([f"{name}.json"], f'"{name}.json" {part}', "remedy: run rpc again")
         for name, content, part in (("text", "{", '"text.json" is no JSON'), ("list", "[]", "is not a summary of rpc"),
-                                    ("fixed", '{"rpc_version": "1"}', "tells of no adapted meshes"), ("binary", "\0", "is no JSON")):
+                                    ("fixed", '{"rpc_version": "1"}', "tells of no adapted meshes"), ("binary", "\0", "is no JSON"),
+                                    ("spread", '{"rpc_version": "1", "contact_patches": {"a": 1}}', 'is damaged: "contact_patches" is not what rpc writes')):
             (self.folder / f"{name}.json").write_text(content)
             self.expect_refusal_of([f"{name}.json"], part)
         self.expect_refusal_of(["missing.json"], '"missing.json": no such file')
