@@ -91,16 +91,35 @@ void add_bounded_energy(std::vector<Result> &all, const Scene &scene, const Solu
   }
 }
 
-/// Those of supports, which are unknown where that of the contact force is.
-void add_reaction_bars(std::vector<Result> &all, const adapt::ObservedErrors &errors)
+/// Those of supports and of what forces move, which are unknown where that of the contact force is.
+void add_bars_of_entries(std::vector<Result> &all, const Scene &scene, const Solution &s,
+                         const adapt::ObservedErrors &errors)
 {
   const auto reason = errors.unknown.find("contact_force");
-  std::size_t k = 0;
+  const auto &conditions = scene.model.dirichlet;
+  const auto &sides = s.step.elastic.dirichlet.rigid;
+  const adapt::MotionErrors &motions = errors.motions;
+  const auto of_condition = [&](const Result &result, const std::vector<double> &bars) {
+    for (std::size_t k = 0; k < bars.size(); ++k)
+      if (conditions[k].name == result.entry) return bars[k];
+    return std::numeric_limits<double>::quiet_NaN();
+  };
+  const auto of_rigid_side = [&](const Result &result, const std::vector<double> &bars) {
+    for (std::size_t j = 0; j < bars.size() && j < sides.size(); ++j)
+      if (conditions[sides[j].condition].name == result.entry) return bars[j];
+    return std::numeric_limits<double>::quiet_NaN();
+  };
   for (Result &result : all) {
-    if (result.key != "reaction_force") continue;
+    const std::string &key = result.key;
+    const bool moves = key == "force_displacement" || key == "rigid_rotation" || key == "rigid_moment";
+    if (!moves && key != "reaction_force" && key != "obstacle_displacement") continue;
     result.no_bar = reason == errors.unknown.end() ? "" : reason->second;
-    if (result.no_bar.empty()) result.error_bar = errors.reactions[k];
-    ++k;
+    if (!result.no_bar.empty()) continue;
+    result.error_bar = key == "reaction_force"       ? of_condition(result, errors.reactions)
+                       : key == "force_displacement" ? of_condition(result, motions.displacements)
+                       : key == "rigid_rotation"     ? of_rigid_side(result, motions.rotations)
+                       : key == "rigid_moment"       ? of_rigid_side(result, motions.moments)
+                                                     : motions.obstacle;
   }
 }
 
@@ -240,14 +259,12 @@ std::vector<Result> result_list(const Scene &scene, const Solution &s)
     Result displacement = vector_result("force_displacement", s.displacements[k], dim, scope.units.length);
     displacement.entry = condition.name;
     displacement.line = "displacement of \"" + condition.name + "\"";
-    displacement.no_bar = "the displacement of a side that a force moves is not estimated";
     all.push_back(displacement);
   }
   add_rigid_results(all, scene, s, scope);
   if (const auto moved = obstacle_moved(scene, s)) {
     Result displacement = vector_result("obstacle_displacement", *moved, dim, scope.units.length);
     displacement.line = "displacement of the obstacle";
-    displacement.no_bar = "the displacement of an obstacle that a force moves is not estimated";
     all.push_back(displacement);
   }
   add_results(all, analysis::body_quantities, s.body, scope);
@@ -262,7 +279,7 @@ std::vector<Result> result_list(const Scene &scene, const Solution &s)
   // Of a sequence of meshes each number has its own reason, else one holds for all.
   const adapt::ObservedErrors errors = adapt::errors_of(scene, s);
   add_place(all, scene, s);
-  add_reaction_bars(all, errors);
+  add_bars_of_entries(all, scene, s, errors);
   add_error_bars(all, errors, scope, s.adaptation && std::isfinite(s.adaptation->errors.energy));
   add_bounded_energy(all, scene, s);
   double largest = 0;

@@ -87,7 +87,6 @@ class Forces(WrittenDeckTestCase):
         self.refuse(written(BOX, "Y: 0.0, Force Y: -1.0"), BAD_INPUT, ["Y or Force Y", "Leave one of them out"])
         self.refuse(written(BOX, 'Force Y: "-x"'), BAD_INPUT, ["must not depend on x, y or z"])
         self.refuse(written(BOX, "Force Z: 1.0"), BAD_INPUT, ["Force Z", "does not have"])
-        self.refuse(written(BOX, "Force Y: -1.0", more="Adapt: {Estimate Error: true}"), BAD_INPUT, ['"Adapt"', '"Dirichlet->top"'])
         left = "Dirichlet:\n    left: {Y: 0.0}"
         self.refuse(written(BOX, "Force Y: -1.0").replace("Dirichlet:", left), BAD_INPUT, ["both hold Y of one node", '"Force Y" is to move it'])
         side = written(BOX, "Y: 0.0").replace("top: {X: 0.0, Y: 0.0}", "left: {X: 0.0, Force Y: -40.0}").replace("[0.9, -3.0]", "[0.1, -3.0]")

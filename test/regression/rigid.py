@@ -166,7 +166,6 @@ class Rigid(WrittenDeckTestCase):
         self.refuse(written(PUNCH, 'Moment Z: "x"'), BAD_INPUT, ["must not depend on x, y or z"])
         self.refuse(written(PUNCH, 'Force Y: "1/(t - 1)"'), BAD_INPUT, ['"Rigid->top->Force Y" must be finite'])
         self.refuse(written(PUNCH, "Side: left top, Force Y: 1.0"), BAD_INPUT, ["must be a side", "left top"])
-        self.refuse(written(PUNCH, "Force Y: -1.0", more="Adapt: {Estimate Error: true}"), BAD_INPUT, ['"Adapt"', '"Rigid->top"'])
         self.refuse(written(PUNCH, "X: 0.0, Force Y: -22.0, Point: [1.0e+6, 1.0]"), BAD_INPUT, ['"Rigid->top->Point" must be nearer to the side "top"'])
         repeated = lambda deck, top: written(deck, top).replace("Element: Q2", "Element: Q2, Periodic: X")
         for deck, turns, given in [(PUNCH, "Rotation Z", "X: 0.0, Force Y: -22.0"), (PUNCH, "Rotation Z", "Rotation Z: 0.01"), (BLOCK, "Rotation Y", "Rotation Z: 0.0")]:

@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Random bodies that a force presses, against the same bodies that a displacement presses.
 
-    python3 forces.py --rpc=build/rpc [--moved=side] [--seed=1] [--scenes=50] [--only=K] [--jobs=2] [--keep=DIR]
+    python3 forces.py --rpc=build/rpc [--moved=side] [--bars=1] [--seed=1] [--scenes=50] [--only=K] [--jobs=2] [--keep=DIR]
 
 Scene K comes from the seed and K alone: a box in the plane, of revolution or in space, whose top is held rigid, on an obstacle or a foundation with a
 gap, rigid or yielding, hardening or on springs, some with friction, some in load steps. The top is first moved by a displacement; then the force
 that this took, of each step, moves it. With --moved=obstacle the body is held, and an obstacle of a random shape is moved. Told are failures: the displacement that comes back differs by more than 1e-10 of the given one, or a run
 does not end as it should; where the foundation carries no more than the given force, it must be refused with exit code 5. Where all that touches yields, and does not harden, a force does not determine the displacement:
 such scenes must end, and their displacements are not compared. Told are the Newton steps of the two ways. The exit code is 1 if a scene failed, or the median of the ratio of Newton steps is above 1.2, of obstacles 1.6.
+
+With --bars=1 the forces press bodies on adapted meshes: each scene has a target for the error, and the true values are those of the same scene from a
+first mesh with cells half as long, of order 2, and a target a fifth as large. --moved=rigid, with bars alone, has the rigid tops of rigid.py, which forces and moments press and turn. A bar holds where
+the true value lies within it and within the bar of the reference; one whose reference has a bar of more than half of it is not judged, and counted. Told are for each quantity how many bars hold, how
+many are null, and the median of bar over true error. The exit code is 1 if a run failed, or displacements or energies held in less than 95 of 100.
 """
 import csv
 import json
@@ -22,6 +27,7 @@ from generate import log_uniform
 SAME, MOST_RATIO = 1e-10, {"side": 1.2, "obstacle": 1.6}  # curved obstacles are looked for several times
 SAME_ON_HARDENING = 1e-8  # where all that touches yields, a force determines the displacement by hardening alone
 NO_SOLUTION = 5
+FINER, MOST_DOFS, KNOWN, HELD = 5, 40000, 0.5, 0.95  # bars: of references the target and dofs; what counts as known; how many must hold
 NOTHING = 1e-9  # of the modulus times the displacement: forces that are rounding
 TIGHT = 1e-11  # residuals: the two ways are to agree to more digits than a run has by default
 KINDS = ["plane strain", "plane stress", "axisymmetric", "space", "space"]
@@ -233,8 +239,111 @@ def judge(options, number):
         return (None if len(back) == len(wanted) and off <= same else f"displacements differ by {off:.2e}: {what}"), what, ratio
 
 
+def quantities(summary):
+    """{name: value, a vector} of numbers that may have bars, as `results` has them."""
+    values = {}
+    for key, result in summary["results"].items():
+        entries = {"": result} if "value" in result else result
+        for name, entry in entries.items():
+            values[f"{key} of {name}" if name else key] = entry
+    return values
+
+
+def pressed_by_forces(rpc, moved, seed, number, folder):
+    """(deck that forces press, None), or (None, why there is none)"""
+    if moved == "rigid":
+        import rigid  # which imports this file
+
+        deck, times, motions = rigid.scene(seed, number)
+        code, given, rows, words = run(rpc, deck, folder, "moved")
+        if code != 0:
+            return None, f"a path ends with {code}: {words}"
+        loads = {motion: rigid.read(given, rows, motion, "force") for motion in motions}
+        if min(map(abs, loads["Y"])) <= NOTHING:
+            return None, "nothing touches"
+        return rigid.by_forces(deck, loads, {}, times or [1.0], {}), None
+    if moved == "obstacle":
+        deck, times, _, point = with_tool(seed, number)
+    else:
+        (deck, times), point = scene(seed, number), None
+    code, given, rows, words = run(rpc, deck, folder, "moved")
+    if code != 0:
+        return None, f"a displacement ends with {code}: {words}"
+    key = "contact_force_y" if point else "top_reaction_y"
+    forces = column(rows, key) if times else [given["contact_force"][1] if point else given["reaction_force"]["top"][1]]
+    if min(map(abs, forces)) <= NOTHING * deck["Material"]["Young's Modulus"]:
+        return None, "nothing touches"
+    return by_force(deck, forces, times or [1.0], point), None
+
+
+def judge_bars(options, number):
+    """(complaint or None, what happened, {quantity: (whether its bar holds or None, bar over error or None)})"""
+    rpc, moved, seed = options.rpc, options.moved, options.seed
+    with trials.folder(options, str(number)) as folder:
+        deck, none = pressed_by_forces(rpc, moved, seed, number, folder)
+        if deck is None:
+            return None, f"not compared: {none}", {}
+        rng = random.Random(f"bars {seed} {number}")
+        space, second = len(deck["Mesh"]["Upper"]) == 3, deck["Mesh"]["Element"].endswith("2")
+        target = rng.choice([0.15, 0.2] if space else [0.02, 0.03, 0.05]) * (1 if second else 2)
+        deck["Uzawa"] = {}
+        deck["Adapt"] = {"Target Relative Error": target, "Max Dofs": MOST_DOFS, "Meshes": rng.choice(["gmsh", "nested"])}
+        if deck["Adapt"]["Meshes"] == "nested":
+            deck["Mesh"]["Element"] = "P" + deck["Mesh"]["Element"][1]
+        code, found, _, words = run(rpc, deck, folder, "pressed")
+        if code == NO_SOLUTION:
+            return None, "all that the foundation carries, refused", {}
+        if code not in (0, 4) or not found or not found["converged"]:
+            return f"exit {code}: {words or (found or {}).get('reason')}", "", {}
+        fine = json.loads(json.dumps(deck))
+        fine["Mesh"].update(Element="P2", Cells=[(3 if space else 2) * cells // (2 if space else 1) for cells in deck["Mesh"]["Cells"]])
+        fine["Adapt"].update({"Target Relative Error": target / (FINER * (1 if second else 2)), "Meshes": "gmsh"})
+        code, reference, _, words = run(rpc, fine, folder, "fine")
+        if code not in (0, 4) or not reference or not reference["converged"]:
+            return None, f"not compared: the reference ends with {code}: {words}", {}
+        held, there = {}, quantities(reference)
+        for key, here in quantities(found).items():
+            if key not in there or key in ("estimated_error", "contact_pressure_error"):
+                continue
+            bar, known = here["error_bar"], there[key]["error_bar"]
+            if bar is None:
+                held[key] = ("null", None)
+                continue
+            if known is None or known > KNOWN * bar:
+                held[key] = ("unknown", None)
+                continue
+            values = [value if isinstance(value, list) else [value] for value in (here["value"], there[key]["value"])]
+            error = sum((a - b) ** 2 for a, b in zip(*values)) ** 0.5
+            rounding = 1e-7 * max(map(abs, values[1]))
+            held[key] = (error <= bar + known + rounding, bar / error if error > rounding else None)
+        lost = [key for key, (holds, _) in held.items() if holds is False]
+        what = f"{found['element']} {found.get('kinematics', 'space')}, {found['dofs']} dofs, reference {reference['dofs']}"
+        return None, what + (f"; beyond their bars: {', '.join(lost)}" if lost else ""), held
+
+
+def tell_bars(all_held, failed):
+    """Prints a line for each quantity; the exit code."""
+    shares = {}
+    for key in sorted({key for held in all_held for key in held}):
+        of = [held[key] for held in all_held if key in held]
+        judged = [holds for holds, _ in of if isinstance(holds, bool)]
+        ratios = [ratio for _, ratio in of if ratio is not None]
+        count = lambda word: sum(holds == word for holds, _ in of)
+        shares[key] = sum(judged) / len(judged) if judged else 1
+        median = f", median of bar over error {statistics.median(ratios):.1f}" if ratios else ""
+        print(f"  {key}: {sum(judged)} of {len(judged)} hold, {count('null')} null, {count('unknown')} not judged{median}")
+    print(f"{failed} failed")
+    few = [key for key, share in shares.items() if share < HELD and ("displacement of" in key or key in ("obstacle_displacement", "energy_J"))]
+    return 1 if failed or few else 0
+
+
 def main():
-    options = trials.arguments(__doc__, 50, ("--moved", {"default": "side", "choices": ["side", "obstacle"]}))
+    options = trials.arguments(__doc__, 50, ("--moved", {"default": "side", "choices": ["side", "obstacle", "rigid"]}), ("--bars", {"type": int, "default": 0}))
+    if options.moved == "rigid" and not options.bars:
+        sys.exit("forces.py: --moved=rigid goes with --bars=1; rigid.py compares rigid sides by force with the same by path")
+    if options.bars:
+        failed, all_held = trials.compared(options, judge_bars)
+        return tell_bars(all_held, failed)
     failed, ratios = trials.compared(options, judge)
     median = statistics.median(ratios) if ratios else 0
     print(f"{failed} of {len(trials.numbers(options))} failed; {len(ratios)} compared; Newton steps by force over those by displacement: median {median:.2f}, "

@@ -64,6 +64,65 @@ double moved_by(const Cycle &cycle, const double force)
   return force > 0 ? cycle.energy_norm_squared / force : 0;
 }
 
+/// What a mesh leaves open of what forces move: what it would leave of forces if that was given, times how soft it is.      (10.7d)
+/// @param of_force  left of forces [N], in 2D per m   @param share  of a force
+MotionErrors left_of_motions(const Cycle &cycle, double of_force, const double share)
+{
+  const Motions &m = cycle.motions;
+  const double force = force_at_work(cycle.contact.force, cycle.reactions),
+               mean = force > 0 ? moved_by(cycle, force) / force : 0;
+  MotionErrors left;
+  for (std::size_t j = 0; j < m.moments.size(); ++j) {
+    const double moment = share * length(m.moments[j]);
+    left.moments.push_back(std::max(of_force * m.arms[j], moment));
+    if (m.arms[j] > 0) of_force = std::max(of_force, moment / m.arms[j]); // loads that turn a side, and do not press it
+  }
+  for (const double softness : m.softness.displacement)
+    left.displacements.push_back(of_force * std::max(softness, mean));
+  for (const double softness : m.softness.rotation) left.rotations.push_back(of_force * softness);
+  left.obstacle = of_force * std::max(m.softness.obstacle, mean);
+  return left;
+}
+
+/// Makes each error no less than what is left open, or grow by it.
+/// @param change  of two numbers: the new error
+template <class Change>
+void change_each(std::vector<double> &errors, const std::vector<double> &left, const Change &change)
+{
+  for (std::size_t k = 0; k < errors.size() && k < left.size(); ++k) errors[k] = change(errors[k], left[k]);
+}
+
+template <class Change>
+void change_all(MotionErrors &errors, const MotionErrors &left, const Change &change)
+{
+  change_each(errors.displacements, left.displacements, change);
+  change_each(errors.rotations, left.rotations, change);
+  change_each(errors.moments, left.moments, change);
+  errors.obstacle = change(errors.obstacle, left.obstacle);
+}
+
+/// Errors of motions, as a distance of two meshes tells.
+/// @param error  of a distance of vectors on two meshes
+template <class Error>
+MotionErrors motion_errors(const Motions &last, const Error &error)
+{
+  MotionErrors errors;
+  const auto of_each = [&](const std::vector<std::array<double, 3>> Motions::*all) {
+    std::vector<double> each;
+    for (std::size_t k = 0; k < (last.*all).size(); ++k)
+      each.push_back(error([all, k](const Cycle &a, const Cycle &b) {
+        return difference_of((a.motions.*all)[k], (b.motions.*all)[k]);
+      }));
+    return each;
+  };
+  errors.displacements = of_each(&Motions::displacements);
+  errors.rotations = of_each(&Motions::rotations);
+  errors.moments = of_each(&Motions::moments);
+  errors.obstacle =
+      error([](const Cycle &a, const Cycle &b) { return difference_of(a.motions.obstacle, b.motions.obstacle); });
+  return errors;
+}
+
 /// No less than what the last mesh leaves open: its estimated error, and data that jump between its nodes.      (10.7a), (10.7b)
 void add_what_a_mesh_leaves(const Cycle &last, const std::vector<double> &eta, ObservedErrors &errors)
 {
@@ -75,6 +134,8 @@ void add_what_a_mesh_leaves(const Cycle &last, const std::vector<double> &eta, O
   double largest = force;
   for (const auto &reaction : last.reactions) largest = std::max(largest, length(reaction));
   for (double &bar : errors.reactions) bar = std::max(bar, squared * largest + jumped);
+  change_all(errors.motions, left_of_motions(last, squared * largest + jumped, squared),
+             [](const double error, const double left) { return std::max(error, left); });
   // The largest penetration may be that of a corner; what remains of it where the body has drawn back is as uncertain as the dents.
   const double deepest = std::max(last.contact.max_penetration, last.contact.max_dent);
   errors.max_penetration = std::max(errors.max_penetration, last.estimate * deepest);
@@ -145,9 +206,23 @@ void add_what_earlier_steps_leave(const CoarserHistory &coarser, const Cycle &la
   errors.contact_force += std::max(shown(difference_of(last.contact.force, other.contact.force)), least);
   for (std::size_t k = 0; k < errors.reactions.size(); ++k)
     errors.reactions[k] += std::max(shown(difference_of(last.reactions[k], other.reactions[k])), least);
+  MotionErrors motions =
+      motion_errors(last.motions, [&](const auto &distance) { return shown(distance(last, other)); });
+  change_all(motions, left_of_motions(last, least, caution * squared / last.energy_norm_squared),
+             [](const double error, const double left) { return std::max(error, left); });
+  change_all(errors.motions, motions, [](const double error, const double more) { return error + more; });
   errors.max_pressure += shown(last.contact.max_pressure - other.contact.max_pressure);
   errors.contact_length += shown(last.contact.contact_length - other.contact.contact_length);
   errors.max_penetration += shown(last.contact.max_penetration - other.contact.max_penetration);
+}
+
+/// Of forces and moments that the load alone fixes the errors are those that meshes show.
+void take_what_the_load_fixes(const ObservedErrors &shown, const FixedByLoad &fixed, ObservedErrors &errors)
+{
+  for (std::size_t k = 0; k < errors.reactions.size() && k < fixed.reactions.size(); ++k)
+    if (fixed.reactions[k]) errors.reactions[k] = shown.reactions[k];
+  for (std::size_t k = 0; k < errors.motions.moments.size() && k < fixed.moments.size(); ++k)
+    if (fixed.moments[k]) errors.motions.moments[k] = shown.motions.moments[k];
 }
 
 /// Whether the load alone fixes the contact force: it has no component along prescribed displacements on any mesh.
@@ -157,7 +232,7 @@ bool is_fixed(const std::vector<Cycle> &cycles, const FixedByLoad &fixed)
   for (const Cycle &cycle : cycles) {
     const double length = rpc::length(cycle.contact.force);
     for (int c = 0; c < 3; ++c)
-      if (!fixed[c] && !(length > 0 && std::abs(cycle.contact.force[c]) <= rounding * length)) return false;
+      if (!fixed.contact[c] && !(length > 0 && std::abs(cycle.contact.force[c]) <= rounding * length)) return false;
   }
   return true;
 }
@@ -220,6 +295,7 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles, const FixedByLo
   const auto length = [](const Cycle &a, const Cycle &b) {
     return std::abs(b.contact.contact_length - a.contact.contact_length);
   };
+  errors.motions = motion_errors(cycles.back().motions, error);
   errors.contact_length = error(length);
   errors.max_penetration = error(
       [](const Cycle &a, const Cycle &b) { return std::abs(b.contact.max_penetration - a.contact.max_penetration); });
@@ -231,10 +307,13 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles, const FixedByLo
     make_unknown(errors, unseen_by_mesh);
     return errors;
   }
-  const double shown = errors.contact_force;
+  const ObservedErrors shown = errors;
   add_what_a_mesh_leaves(cycles.back(), eta, errors);
-  if (is_fixed(cycles, fixed))
-    errors.contact_force = shown > tolerance * rpc::length(cycles.back().contact.force) ? shown : 0;
+  take_what_the_load_fixes(shown, fixed, errors);
+  if (is_fixed(cycles, fixed)) {
+    const double rounding = tolerance * rpc::length(cycles.back().contact.force);
+    errors.contact_force = shown.contact_force > rounding ? shown.contact_force : 0;
+  }
   const std::string reason = unknown_max_pressure(cycles, eta);
   if (!reason.empty()) {
     errors.max_pressure = std::numeric_limits<double>::quiet_NaN();
@@ -269,9 +348,10 @@ ObservedErrors observed_errors(std::vector<Cycle> cycles, const CoarserHistory &
   errors.contact_pressure = std::numeric_limits<double>::quiet_NaN();
   errors.unknown["contact_pressure_l2_relative"] =
       alone ? one_mesh : "what the meshes of earlier steps have left of it is not known";
-  const double force_on_meshes = errors.contact_force;
+  const ObservedErrors on_meshes = errors;
   if (earlier.matter) add_what_earlier_steps_leave(coarser, cycles.back(), earlier, errors);
-  if (is_fixed(cycles, fixed)) errors.contact_force = force_on_meshes;
+  take_what_the_load_fixes(on_meshes, fixed, errors);
+  if (is_fixed(cycles, fixed)) errors.contact_force = on_meshes.contact_force;
   share_what_springs_tell(cycles.back(), errors);
   return errors;
 }

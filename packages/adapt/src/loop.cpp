@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "earlier_steps.hpp"
 #include "guide.hpp"
+#include "motions.hpp"
 #include "next_mesh.hpp"
 #include "rpc/adapt/solve.hpp"
 #include "rpc/bound/rules.hpp"
@@ -98,6 +99,7 @@ Cycle cycle_of(const Solution &s, const double seconds)
   cycle.energy_norm_squared = s.energy_norm_squared;
   cycle.contact = s.contact.total;
   cycle.reactions = s.reactions;
+  cycle.motions = motions_of(s);
   cycle.pressure_change = s.pressure_norm > 0 ? s.pressure_change / s.pressure_norm : 0;
   for (const int steps : s.uzawa.newton_iterations) cycle.newton_iterations += steps;
   cycle.linear_iterations = s.linear.iterations;
@@ -126,14 +128,6 @@ std::string nothing_strained(const Solution &s, const UnitNames &units)
            << units.of(unit::energy, s.discretization.per_length()) << " is rounding, which may reach "
            << s.estimate->rounding;
   return reason.str();
-}
-
-FixedByLoad fixed_by_load(const analysis::Model &model)
-{
-  FixedByLoad fixed = {true, true, true};
-  for (const auto &condition : model.dirichlet)
-    for (int c = 0; c < 3; ++c) fixed[c] = fixed[c] && !condition.displacement[c];
-  return fixed;
 }
 
 /// Of meshes that grow alike, from the next one to the last.

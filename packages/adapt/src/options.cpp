@@ -119,20 +119,6 @@ void require_adaptable(const Task &task)
                   "deck: \"Adapt\" does not go with several foundations of one side, \""
                       << contact[b].path << "\" and \"" << contact[a].path
                       << "\": their errors are not estimated yet. Leave \"Adapt\" out.");
-  for (const auto &condition : task.model.dirichlet)
-    RPC_REQUIRE(
-        !(condition.is_moved() || condition.rigid) || !errors,
-        "deck: \"Adapt\" does not go with a side that a force moves or that is held rigid, \""
-            << condition.path()
-            << "\": errors are not estimated there yet. Leave \"Adapt\" out, or prescribe the displacement that "
-               "the force has led to.");
-  for (const auto &side : contact)
-    RPC_REQUIRE(
-        !side.obstacle.is_moved() || !errors,
-        "deck: \"Adapt\" does not go with an obstacle that a force moves, \""
-            << side.path
-            << "->Obstacle\": errors are not estimated there yet. Leave \"Adapt\" out, or give the obstacle the "
-               "place that the force has led to.");
   if (!bounded) return;
   bound::require_covered(task);
   RPC_REQUIRE(!task.adapt.adapts() || nests(task.mesh, task.adapt) || !box ||

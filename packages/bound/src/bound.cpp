@@ -118,7 +118,14 @@ void require_covered(const analysis::Task &task)
   require_of_deck(!on_gpu, "its kernels did not end on a GPU when they were tried; a program without CUDA has it");
   require_of_deck(task.model.kinematics != fem::Kinematics::axisymmetric, "the body is axisymmetric");
   for (const auto &condition : task.model.dirichlet)
-    require_of_deck(!condition.is_moved(), "a force moves the side of \"Dirichlet->" + condition.name + "\"");
+    require_of_deck(!condition.is_moved() && !condition.rigid,
+                    "\"" + condition.path() + "\" " +
+                        (condition.rigid ? "holds its side rigid" : "is moved by a force") +
+                        ", whose resultant the stresses in equilibrium would have to have");
+  for (const auto &side : task.model.contact)
+    require_of_deck(!side.obstacle.is_moved(),
+                    "a force moves the obstacle of \"" + side.path +
+                        "\", whose resultant the stresses in equilibrium would have to have");
   for (std::size_t k = 0; k < task.model.contact.size(); ++k)
     for (std::size_t other = 0; other < k; ++other)
       require_of_deck(task.model.contact[other].side != task.model.contact[k].side,

@@ -194,6 +194,25 @@ double TiedSolver::inverse_energy(const std::function<double(const Vector &)> &h
   return energy;
 }
 
+std::vector<double> TiedSolver::softness() const
+{
+  const int n = stiffness_->tied().size();
+  const std::vector<double> S = complement();
+  std::vector<double> all;
+  for (int k = 0; k < n; ++k) {
+    std::vector<double> column(n, 0.);
+    column[k] = 1;
+    if (!solve_dense(S, column)) return {};
+    all.insert(all.end(), column.begin(), column.end());
+  }
+  return all;
+}
+
+std::vector<double> LinearSolver::softness_of_tied() const
+{
+  return tied_ ? tied_->softness() : std::vector<double>();
+}
+
 void LinearSolver::move_as_one(const RCP<const TiedStiffness> &stiffness, const RCP<const UpdatedOperator> &H)
 {
   tied_ = std::make_shared<TiedSolver>(stiffness, H);

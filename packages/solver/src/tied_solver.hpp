@@ -27,6 +27,8 @@ public:
   LinearSolver::Result solve(const Held &held, const Vector &b, Vector &x, const Accuracy &wanted);
   /// About F . A^-1 F.
   double inverse_energy(const std::function<double(const Vector &)> &held, const Vector &F) const;
+  /// (groups, groups) (D - C^T Y)^-1, column after column; empty where it is singular.
+  std::vector<double> softness() const;
 
 private:
   std::vector<double> complement() const;

@@ -133,6 +133,16 @@ Point left_to_go(const Problem &problem, const StepSolution &s)
   return way;
 }
 
+double work_on_obstacle(const Problem &problem, const Step &step, const Point &way)
+{
+  const Model now = problem.model().seen_at(step.time);
+  const contact::ContactOptions *const pressed = pressed_by_force(now);
+  double work = 0;
+  for (int c = 0; c < 3; ++c)
+    if (pressed->obstacle.force[c]) work += (*pressed->obstacle.force[c])({}) * (step.obstacle[c] + way[c]);
+  return work;
+}
+
 bool obstacle_rests(const Problem &problem, const StepSolution &s, const double tolerance)
 {
   return !(length(left_to_go(problem, s)) > tolerance * s.u->normInf());

@@ -25,6 +25,8 @@ std::array<double, 3> force_on_floating(const fem::Discretization &d, const Mode
 /// @throws rpc::Error (no_solution) where it passes the side by
 Point approach(const fem::Discretization &d, const Model &now);
 
+/// Work of the force on the obstacle from where it starts to where it is seen, and a way further [J], in 2D per m.   (3.17)
+double work_on_obstacle(const Problem &problem, const Step &step, const Point &way);
 /// How far a solution's obstacle is still to go [m]: its held sides have moved the other way. Collective.
 Point left_to_go(const Problem &problem, const StepSolution &s);
 /// Whether that is no more than a tolerance, in units of the largest displacement: the contact points were seen from where the obstacle is. Collective.

@@ -294,14 +294,18 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
   };
   RCP<const MultiVector> met = kept_.memory ? kept_.memory->dent : Teuchos::null;
   if (on_foundation) met = met_at(moved_along(*problem_, t, *kept_.memory->displacement), kept_.memory->obstacle);
-  Step step = problem_->step(t, met.get(), memory());
+  std::optional<Offered> offered = std::exchange(offered_, std::nullopt);
+  const bool finds_obstacle = by_force && !offered;
+  Step step = problem_->step(t, met.get(), memory(), by_force && offered ? &offered->obstacle : nullptr);
   if (now) now(*problem_, step);
-  Starts starts = starts_of(step);
+  Starts starts = starts_of(step, std::move(offered));
   Progress reports = progress;
   double prediction_seconds = 0;
   if (by_force) {
     if (reports.start) reports.start(*problem_, step);
     reports.start = {};
+  }
+  if (finds_obstacle) {
     const Timed timer("prediction", prediction_seconds);
     foresee(met.get(), step, starts);
   }
@@ -380,10 +384,11 @@ void LoadHistory::take_to_obstacle(const Point &way, StepSolution &s) const
   s.u = s.state.displacement;
 }
 
-/// The last state, the extrapolated one, rest, and what coarser meshes predict; without a last state the latter alone.
-Starts LoadHistory::starts_of(const Step &step)
+/// What is offered, the last state, the extrapolated one, rest, and what coarser meshes predict; without a last state the first or the latter alone.
+Starts LoadHistory::starts_of(const Step &step, std::optional<Offered> offered)
 {
-  Starts starts{std::exchange(offered_, {}), {}};
+  Starts starts;
+  const bool has_place = pressed_by_force(problem_->model()) != nullptr && offered;
   if (kept_.memory) {
     starts.states.push_back(state_of(step.contact, *kept_.memory));
     if (kept_.before && kept_.before->time < kept_.memory->time) {
@@ -394,8 +399,13 @@ Starts LoadHistory::starts_of(const Step &step)
       starts.states.push_back(std::move(later));
     }
     starts.states.push_back(at_rest(step.contact, problem_->discretization()));
+    if (has_place)
+      for (auto &state : starts.states)
+        state = shifted(std::move(state), difference(step.obstacle, kept_.memory->obstacle),
+                        problem_->discretization().dim());
   }
-  if (kept_.memory || starts.states.empty())
+  if (offered) starts.states.insert(starts.states.begin(), std::move(offered->start));
+  if (!has_place && (kept_.memory || starts.states.empty()))
     starts.predict = [this, &step] { return predictor_.predict(*problem_, step, memory()); };
   return starts;
 }

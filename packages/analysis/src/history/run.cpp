@@ -3,6 +3,7 @@
 
 #include "body/obstacle_force.hpp"
 #include "rpc/analysis/rules.hpp"
+#include "rpc/contact/node_columns.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/interrupt.hpp"
 #include "rpc/core/timed.hpp"
@@ -297,7 +298,7 @@ Solution solve_on(const Task &task, const MadeMesh &made, const Solution *const 
   Step step;
   {
     const Timed phase("assembly", s.seconds.assembly);
-    step = problem->step(task.time);
+    step = problem->step(task.time, nullptr, nullptr, previous ? &previous->step.obstacle : nullptr);
   }
   throw_if_interrupted(*comm, "before the first solve; no results are written");
   if (listener.mesh) listener.mesh(d, step.contact);
@@ -316,6 +317,7 @@ Solution solve_on(const Task &task, const MadeMesh &made, const Solution *const 
   last_resort.low_penalties = true;
   if (!task.has_steps() && pressed_by_force(task.model)) {
     LoadHistory history(problem, task.step, 0, task.linear_solver, coarser);
+    if (previous) history.offer(starts.front(), previous->step.obstacle);
     static_cast<StepSolution &>(s) = history.solve(task.time, last_resort, listener.step, {});
     s.body = fem::body_peaks(d, task.model.materials, *s.u);
   } else if (!task.has_steps()) {
@@ -334,7 +336,7 @@ Solution solve_on(const Task &task, const MadeMesh &made, const Solution *const 
       history.go_on_from(made.mesh == earlier->discretization.mesh
                              ? *earlier->memory
                              : interpolated(*earlier->memory, earlier->discretization, d));
-    for (const auto &start : starts) history.offer(start);
+    if (previous) history.offer(starts.front(), previous->step.obstacle);
     static_cast<StepSolution &>(s) = history.advance(task.time, listener.step);
     if (s.uzawa.converged) s.memory = *history.memory();
     if (earlier) s.history = earlier->history;
@@ -343,7 +345,9 @@ Solution solve_on(const Task &task, const MadeMesh &made, const Solution *const 
   }
   s.matrix_assemblies = problem->stiffness()->assemblies();
   if (!s.has_results()) take_back_results(s);
-  if (previous) s.start_pressure = starts.front().multiplier.normal;
+  if (previous) // at the points that the obstacle has where it is now
+    s.start_pressure = contact::at_points(
+        s.step.contact, *contact::node_columns(step.contact, starts.front().multiplier.normal, d.mesh->owned_nodes));
   if (listener.solved) listener.solved(*problem, s);
   note_skipped(task, s);
   s.seconds.prediction += s.prediction_seconds;

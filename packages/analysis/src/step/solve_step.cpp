@@ -17,6 +17,7 @@
 #include "rpc/core/interrupt.hpp"
 #include "rpc/core/timed.hpp"
 #include "rpc/solver/rules.hpp"
+#include "step/softness.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -45,7 +46,7 @@ double residual_before(const std::vector<double> &worst, bool bounds_follow);
 contact::OptimalityResiduals judge(const Problem &problem, const Step &step, const Iterate &iterate,
                                    const contact::ContactState &now, SolverState &state, double tolerance);
 void tell_want_of_friction(UzawaResult &uzawa, const Problem &problem);
-void read_results(const Problem &problem, const StepOptions &options, StepSolution &s);
+void read_results(const Problem &problem, const StepOptions &options, SolverState &state, StepSolution &s);
 solver::LinearSolverCounts counts_since(const solver::LinearSolverCounts &before, solver::LinearSolverCounts now);
 
 StepSolution solve_with(const Problem &problem, const Step &step, SolverState &state, const StepOptions &options,
@@ -109,7 +110,7 @@ StepSolution solve_with(const Problem &problem, const Step &step, SolverState &s
     if (!uzawa.converged && step.support.by_coulomb_only) tell_want_of_friction(uzawa, problem);
     s.u = s.state.displacement;
     s.state.rest = Teuchos::null; // of the judgement alone
-    read_results(problem, options, s);
+    read_results(problem, options, state, s);
   }
   s.linear = counts_since(counts_before, state.linear().counts());
   s.solve_seconds -= s.linear.setup_seconds;
@@ -371,18 +372,20 @@ void read_tied(const Problem &problem, const StepOptions &options, StepSolution 
     std::copy_n(s.rigid_motions[j].begin(), 3, s.displacements[dirichlet.rigid[j].condition].begin());
 }
 
-/// Of the loads along the displacement, seen from where the body is held.
+/// Of the loads along the displacement, seen from where the body is held, and of the force on the obstacle along its way.      (3.17)
 double work_of_loads(const Problem &problem, const StepSolution &s)
 {
   const Vector &load = *s.step.elastic.applied_load;
   if (s.step.on_floating.is_null()) return load.dot(*s.state.displacement);
-  const auto u = shifted(*s.state.displacement, left_to_go(problem, s), problem.discretization().dim());
-  return load.dot(*u) - s.step.on_floating->dot(*u);
+  const Point way = left_to_go(problem, s);
+  const auto u = shifted(*s.state.displacement, way, problem.discretization().dim());
+  return load.dot(*u) - s.step.on_floating->dot(*u) + work_on_obstacle(problem, s.step, way);
 }
 
-void read_results(const Problem &problem, const StepOptions &options, StepSolution &s)
+void read_results(const Problem &problem, const StepOptions &options, SolverState &state, StepSolution &s)
 {
   read_tied(problem, options, s);
+  s.softness = softness_of(problem, s.step.elastic.dirichlet, state);
   s.contact = contact::contact_result(problem.discretization(), problem.contact_sides(), s.step.contact, s.state,
                                       contact::has_friction(problem.model().contact));
   if (options.looks_between_nodes)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rpc/adapt/estimator.hpp"
+#include "rpc/analysis/solve_step.hpp"
 #include "rpc/bound/bound.hpp"
 #include "rpc/core/quantity.hpp"
 
@@ -14,6 +15,16 @@
 namespace rpc::adapt
 {
 
+/// What forces move on one mesh.
+struct Motions {
+  std::vector<std::array<double, 3>> displacements; ///< of each Dirichlet condition [m]; empty where none is moved
+  std::vector<std::array<double, 3>> rotations;     ///< of each rigid side [rad]
+  std::vector<std::array<double, 3>> moments;       ///< of each rigid side [N m], in 2D per m
+  std::vector<double> arms; ///< of each rigid side: root mean square of how far a rotation of 1 moves its nodes [m]
+  Point obstacle{};         ///< how far a force has moved its obstacle [m]
+  analysis::Softness softness;
+};
+
 /// One mesh of an adaptive run.
 struct Cycle {
   std::size_t dofs = 0;
@@ -22,6 +33,7 @@ struct Cycle {
   double energy_norm_squared = 0;               ///< a(u, u) [J], in 2D per m
   contact::ContactSums contact;                 ///< of all sides
   std::vector<std::array<double, 3>> reactions; ///< of each Dirichlet condition on the body [N], in 2D per m
+  Motions motions;
   double pressure_change = 0;        ///< of the contact pressure since the mesh before, over its norm, both in L2
   double recovered_pressure = 0;     ///< |contact pressure - that of the recovered stress| / |contact pressure|, in L2
   double recovered_max_pressure = 0; ///< largest difference of the two where the pressure is near its maximum [Pa]
@@ -36,6 +48,13 @@ struct Cycle {
   double seconds = 0;
 };
 
+/// Errors of what forces move, and of moments, each like the number that it belongs to; where that of the contact force is known.
+struct MotionErrors {
+  std::vector<double> displacements; ///< of each Dirichlet condition, 2-norm [m]; empty where no force moves a side
+  std::vector<double> rotations, moments; ///< of each rigid side, 2-norm [rad], [N m], in 2D per m
+  double obstacle = 0;                    ///< of the displacement of the one that a force moves, 2-norm [m]
+};
+
 /// Errors of results as the sequence of meshes shows them, and for pressures the recovered stress if that shows more; each
 /// like the number that it belongs to. NaN where the meshes do not tell, as from one alone. doc/theory.md (10.7), (10.8)
 struct ObservedErrors {
@@ -47,6 +66,7 @@ struct ObservedErrors {
   double max_penetration = 0;
   std::vector<double>
       reactions; ///< of the force of each Dirichlet condition, 2-norm; where that of the contact force is known
+  MotionErrors motions;
   std::map<std::string, std::string> unknown; ///< why, by the key in the table below, for those that are NaN
 };
 
@@ -59,7 +79,7 @@ inline constexpr std::array<Quantity<ObservedErrors>, 6> error_bars{{
     {&ObservedErrors::max_penetration, "max_penetration", unit::length, Combine::maximum, {true}},
 }};
 static_assert(sizeof(ObservedErrors) == error_bars.size() * sizeof(double) + sizeof(std::vector<double>) +
-                                            sizeof(std::map<std::string, std::string>),
+                                            sizeof(MotionErrors) + sizeof(std::map<std::string, std::string>),
               "an error bar has no line in the table");
 
 /// The name in the files of the number that an error bar belongs to.
@@ -84,8 +104,14 @@ inline constexpr const char *unseen_by_mesh =
     "the mesh misses contact between its nodes, which is most of the estimated error"; ///< a reason in `unknown`
 inline constexpr const char *one_mesh = "one mesh shows no change";                    ///< a reason in `unknown`
 
-/// Which components of the contact force the load alone fixes: those along which no displacement is prescribed.
-using FixedByLoad = std::array<bool, 3>;
+/// Which forces the load alone fixes.
+struct FixedByLoad {
+  std::array<bool, 3>
+      contact{}; ///< components along which no displacement is prescribed, or a force moves the obstacle
+  std::vector<bool> reactions,
+      moments; ///< of each Dirichlet condition, of each rigid side: all components; empty: none
+};
+FixedByLoad fixed_by_load(const analysis::Model &model);
 
 /// Error bars of the last of several meshes.
 /// @param fixed      a contact force that has no other components has but the error that the meshes show

@@ -82,7 +82,11 @@ public:
   /// @param before  of the step before it, displacement and pressure, if there was one
   void go_on_from(Memory memory, std::optional<Memory> before = std::nullopt);
   /// Another state from which the next step may start, beside those of the steps before.
-  void offer(contact::ContactState start) { offered_.push_back(std::move(start)); }
+  /// @param obstacle  where it has the obstacle that a force moves: the step is first seen from there
+  void offer(contact::ContactState start, const Point &obstacle = {})
+  {
+    offered_ = Offered{std::move(start), obstacle};
+  }
   /// Has steps halved whose relative_imbalance() is larger than the energy tolerance, and their halves, until that of the whole step is no
   /// larger either, or halves are no better than the whole.
   void balance_energies(const StepsOptions &options)
@@ -120,6 +124,10 @@ private:
     Headway headway{
         {step_rules.helpful, step_rules.most_attempts}}; // of what the parts around this one miss of the balance [J]
   };
+  struct Offered {
+    contact::ContactState start;
+    Point obstacle;
+  };
   /// What is remembered between steps.
   struct Remembered {
     std::optional<Memory> memory, before; // of the last step, and of the one before it
@@ -129,7 +137,7 @@ private:
   StepSolution advance_in_parts(double t, const Halvings &left, const Progress &progress,
                                 const std::function<void(const Problem &, const Step &)> &now);
   double share_missed(const Energies &before, const StepSolution &s, double tolerance) const;
-  Starts starts_of(const Step &step);
+  Starts starts_of(const Step &step, std::optional<Offered> offered);
   void foresee(const MultiVector *met, Step &step, Starts &starts);
   contact::ContactState onto(const contact::ContactNodes &from, const contact::ContactNodes &to,
                              contact::ContactState state) const;
@@ -143,7 +151,7 @@ private:
   std::unique_ptr<SolverState> state_;
   Predictor predictor_;
   Remembered kept_;
-  std::vector<contact::ContactState> offered_;
+  std::optional<Offered> offered_;
   StepRecord last_;
   std::shared_ptr<const MeanDisplacements> mean_displacements_; // made when it is asked for
   double energy_tolerance_ = std::numeric_limits<double>::infinity();

@@ -82,6 +82,14 @@ struct Starts {
   std::function<Prediction()> predict;
 };
 
+/// By how much forces of 1 N along unknown motions, or moments that 1 N has at the root mean square of a rigid side's arms, move what forces
+/// move, with the contact states as they are: 2-norms over these forces. 0 where it is not known.                  (4.17)
+struct Softness {
+  std::vector<double> displacement; ///< of each Dirichlet condition [m/N], in 2D per m
+  std::vector<double> rotation;     ///< of each rigid side [rad/N], in 2D per m
+  double obstacle = 0;              ///< that a force moves [m/N], in 2D per m
+};
+
 /// The solution of one step, and how it was found. Plain data: it outlives its problem.
 struct StepSolution {
   Step step;                   ///< what was solved: loads, prescribed displacements, contact points
@@ -96,6 +104,7 @@ struct StepSolution {
   std::vector<std::array<double, 3>> displacements;
   std::vector<fem::SixNumbers> rigid_motions; ///< of each rigid side
   std::vector<fem::SixNumbers> rigid_forces;  ///< with which what holds it acts on the body, about its reference point
+  Softness softness;
 
   solver::LinearSolverCounts linear; ///< of this step
   FoundBy found_by = FoundBy::choices;

@@ -80,6 +80,9 @@ public:
   /// About F . H^-1 F: one multigrid cycle stands for H^-1. 0 where F is 0, NaN where the cycle breaks
   /// down; collective.
   double inverse_energy(const Vector &F);
+  /// (groups, groups) By how much forces move the tied unknowns, each with all others as they like, with H of the last solve; empty where there
+  /// are none, or nothing holds them. Collective.                                                                    (4.17)
+  std::vector<double> softness_of_tied() const;
 
   const LinearSolverCounts &counts() const;
   /// About what the last solve takes on one rank [s], by constants of one machine: a choice by it is about the same in every run, on any number
