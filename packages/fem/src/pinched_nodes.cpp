@@ -12,7 +12,8 @@ namespace
 
 /// Counts the owned nodes where the cells around are not all joined over facets that hold the node.
 struct CountPinchedNodes {
-  static constexpr int most_cells = 64; // around a node; one with more counts
+  static constexpr int most_cells = 64;   // around a node; one with more counts
+  static constexpr int most_vertices = 8; // of a cell, a hexahedron
 
   DeviceView<LO **> cells;   // (cells, nodes)            in
   NodeToCells node_to_cells; //                           in
@@ -51,9 +52,24 @@ struct CountPinchedNodes {
   KOKKOS_FUNCTION bool is_inside(const LO node) const
   {
     std::uint64_t bits = 0;
-    for (std::size_t k = node_to_cells.row(node); k < node_to_cells.row(node + 1); ++k)
-      for (std::size_t f = 0; f < facets.extent(0); ++f)
-        bits ^= facet_at(node_to_cells.cell(k), static_cast<int>(f), node);
+    for (std::size_t k = node_to_cells.row(node); k < node_to_cells.row(node + 1); ++k) {
+      const LO cell = node_to_cells.cell(k);
+      std::uint64_t number[most_vertices];
+      int at = -1;
+      for (int a = 0; a < num_vertices; ++a) {
+        number[a] = splitmix64(static_cast<std::uint64_t>(cells(cell, a)));
+        if (cells(cell, a) == node) at = a;
+      }
+      for (std::size_t f = 0; f < facets.extent(0); ++f) {
+        std::uint64_t sum = 0;
+        bool holds = false;
+        for (std::size_t a = 0; a < facets.extent(1); ++a) {
+          holds = holds || facets(f, a) == at;
+          sum += number[facets(f, a)];
+        }
+        if (holds) bits ^= sum;
+      }
+    }
     return bits == 0;
   }
   KOKKOS_FUNCTION void operator()(const LO node, LO &count) const

@@ -226,6 +226,10 @@ Course course_of(const TaggedMesh &draft, const Entities &facets, const int face
   const std::vector<int> &local = draft.mesh.element.facets()[facets.ordinal(facet, k)];
   const int *const nodes = nodes_of(draft, facets.cell(facet, k));
   const int count = facets.num_vertices;
+  if (count == 3) { // upward: an even permutation of the ascending order
+    const int a = nodes[local[0]], b = nodes[local[1]], c = nodes[local[2]];
+    return {((a < b) == (b < c)) == (a < c), -1};
+  }
   int lowest = 0;
   for (int v = 1; v < count; ++v)
     if (nodes[local[v]] < nodes[local[lowest]]) lowest = v;

@@ -4,7 +4,7 @@
 #include "sorted_lists.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -15,20 +15,22 @@ namespace
 
 constexpr int most_vertices = 4; // of a quadrilateral
 
-/// Vertices, ascending and filled up with the largest integer: compared as a whole.
-using VertexKey = std::array<int, most_vertices>;
+/// An entity as one cell has it, compared as a whole: its vertices but the lowest one, ascending, then the occurrence.
+using Ordered = std::pair<std::uint64_t, std::uint64_t>;
 
-/// @param local  which nodes of the cell the entity has, vertices first
-VertexKey key_of(const int *const cell, const std::vector<int> &local, const int num_vertices)
+std::uint64_t packed(const int high, const int low)
 {
-  VertexKey key;
-  key.fill(std::numeric_limits<int>::max());
-  for (int v = 0; v < num_vertices; ++v) {
-    int at = v;
-    for (; at > 0 && key[at - 1] > cell[local[v]]; --at) key[at] = key[at - 1];
-    key[at] = cell[local[v]];
-  }
-  return key;
+  return static_cast<std::uint64_t>(high) << 32 | static_cast<std::uint64_t>(low);
+}
+
+/// @param vertices  ascending, `count` of them
+Ordered ordered(const int *const vertices, const int count, const int occurrence)
+{
+  return {packed(vertices[1], count > 2 ? vertices[2] : 0), packed(count > 3 ? vertices[3] : 0, occurrence)};
+}
+bool same_vertices(const Ordered &a, const Ordered &b)
+{
+  return a.first == b.first && a.second >> 32 == b.second >> 32;
 }
 
 /// @param table  local nodes of each entity of a cell, vertices first
@@ -38,33 +40,47 @@ Entities entities_of(const Element &element, const Element::Table &table, const 
   Entities entities;
   entities.per_cell = static_cast<int>(table.size());
   entities.num_vertices = num_vertices;
+  const unsigned per_cell = entities.per_cell; // 32 bits divide faster
   const std::size_t width = element.num_nodes(), num_cells = cells.size() / width;
-  const auto key_at = [&](const std::size_t occurrence) {
-    return key_of(&cells[width * (occurrence / table.size())], table[occurrence % table.size()], num_vertices);
-  };
   std::vector<int> &of_cell = entities.of_cell;
-  of_cell.resize(num_cells * table.size());
+  of_cell.resize(num_cells * per_cell);
   int last_node = -1;
-  for (std::size_t k = 0; k < of_cell.size(); ++k) {
-    of_cell[k] = key_at(k)[0];
-    last_node = std::max(last_node, of_cell[k]);
-  }
+  for (std::size_t c = 0, k = 0; c < num_cells; ++c)
+    for (const std::vector<int> &local : table) {
+      const int *const cell = &cells[width * c];
+      int lowest = cell[local[0]];
+      for (int v = 1; v < num_vertices; ++v) lowest = std::min(lowest, cell[local[v]]);
+      of_cell[k++] = lowest;
+      last_node = std::max(last_node, lowest);
+    }
   Lists by_lowest = sorted_into_lists(of_cell, last_node + 1); // of vertices: then only a few are left to sort
   entities.occurrences.value = std::move(by_lowest.value);
   auto occurrence = entities.occurrences.value.begin();
-  std::vector<std::pair<VertexKey, int>> few; // vertices, occurrence
+  std::vector<Ordered> few;
   int entity = -1;
   for (int node = 0; node <= last_node; ++node) {
     few.clear();
-    for (int k = 0; k < by_lowest.size_of(node); ++k) few.emplace_back(key_at(occurrence[k]), occurrence[k]);
+    for (int k = 0; k < by_lowest.size_of(node); ++k) {
+      const unsigned at = occurrence[k], c = at / per_cell;
+      const std::vector<int> &local = table[at - c * per_cell];
+      const int *const cell = &cells[width * c];
+      int vertices[most_vertices];
+      for (int v = 0; v < num_vertices; ++v) {
+        int to = v;
+        for (; to > 0 && vertices[to - 1] > cell[local[v]]; --to) vertices[to] = vertices[to - 1];
+        vertices[to] = cell[local[v]];
+      }
+      few.push_back(ordered(vertices, num_vertices, static_cast<int>(at)));
+    }
     std::sort(few.begin(), few.end());
     for (std::size_t k = 0; k < few.size(); ++k, ++occurrence) {
-      const VertexKey &key = few[k].first;
-      if (k == 0 || key != few[k - 1].first) {
+      if (k == 0 || !same_vertices(few[k], few[k - 1])) {
         if (++entity > 0) entities.occurrences.begin.push_back(occurrence - entities.occurrences.value.begin());
-        entities.vertices.insert(entities.vertices.end(), key.begin(), key.begin() + num_vertices);
+        const int vertices[most_vertices] = {node, static_cast<int>(few[k].first >> 32), static_cast<int>(few[k].first),
+                                             static_cast<int>(few[k].second >> 32)};
+        entities.vertices.insert(entities.vertices.end(), vertices, vertices + num_vertices);
       }
-      *occurrence = few[k].second;
+      *occurrence = static_cast<int>(few[k].second & std::numeric_limits<std::uint32_t>::max());
       of_cell[*occurrence] = entity;
     }
   }

@@ -80,21 +80,29 @@ private:
       coarse.coords.insert(coarse.coords.end(), &mesh_.coords[std::size_t(dim) * v],
                            &mesh_.coords[std::size_t(dim) * v] + dim);
     }
+    std::vector<int> cell_number(cells_.size(), -1);
     for (std::size_t c = 0; c < cells_.size(); ++c) {
       if (cells_[c][0] < 0) continue;
+      cell_number[c] = coarse.num_cells();
       for (int k = 0; k <= dim; ++k) coarse.cells.push_back(number[cells_[c][k]]);
       coarse.block.push_back(mesh_.block[c]);
     }
     for (const SideData &side : mesh_.sides) coarse.sides.push_back({side.name, {}, {}});
-    const Entities facets = facets_of(coarse.element, coarse.cells);
+    const Element::Table &ordinals = mesh_.element.facets();
     for (const FeatureFacet &facet : facets_) {
       if (facet.label < 0 || features_.sides[facet.label].empty()) continue;
-      std::vector<int> vertices;
-      for (int k = 0; k < dim; ++k) vertices.push_back(number[facet.vertex[k]]);
-      const auto f = facets.find(vertices);
+      int first = -1; // of the cells that have the facet
+      for (const int c : cells_at_[facet.vertex[0]])
+        if ((first < 0 || c < first) && std::all_of(facet.vertex.begin(), facet.vertex.begin() + dim,
+                                                    [&](const int v) { return has(cells_[c].data(), dim + 1, v); }))
+          first = c;
+      const auto ordinal = std::find_if(ordinals.begin(), ordinals.end(), [&](const std::vector<int> &local) {
+        return std::all_of(local.begin(), local.begin() + dim,
+                           [&](const int k) { return has(facet.vertex.data(), dim, cells_[first][k]); });
+      });
       for (const int side : features_.sides[facet.label]) {
-        coarse.sides[side].cell.push_back(facets.cell(*f, 0));
-        coarse.sides[side].ordinal.push_back(facets.ordinal(*f, 0));
+        coarse.sides[side].cell.push_back(cell_number[first]);
+        coarse.sides[side].ordinal.push_back(static_cast<int>(ordinal - ordinals.begin()));
       }
     }
     for (PointData set : mesh_.points) {
