@@ -200,47 +200,46 @@ TEST(ActiveSet, ShortStepsOfTheInteriorPathBecomeLongerByCentring)
 {
   rpc::test::PressedBox strip({{0, 0}, {1, 0.02}, {100, 1}, {2, 1}}, {1000, 0.3}, {"left"}, ScalarField(-1e-3),
                               flat(3e-3, 1e-2));
-  contact::Iterate &path = *strip.iterate;
   Vector &u = *strip.u;
   Vector F(u.getMap()), G(u.getMap()), d(u.getMap()), centered(u.getMap());
   const auto solve_for = [&](Vector &x) {
     ASSERT_TRUE(strip.linear->solve(F, x, {1e-10}).converged);
     x.scale(-1.);
   };
-  path.start_interior_path(u);
+  contact::InteriorPath path = strip.iterate->interior_path(u);
   int is_short = 0, longer = 0;
-  for (int step = 0; step < 60 && path.interior_path().gap() > 1e-8; ++step) {
-    const double gap = path.interior_path().gap();
-    path.linearize_interior(u, F);
+  for (int step = 0; step < 60 && path.gap() > 1e-8; ++step) {
+    const double gap = path.gap();
+    path.linearize(u, F);
     solve_for(d);
-    path.correct_interior(u, d, F);
+    path.correct(u, d, F);
     solve_for(d);
-    const double t = path.longest_interior_step(u, d);
+    const double t = path.longest_step(u, d);
     EXPECT_GT(t, 0);
     EXPECT_LE(t, 1);
     if (t < 0.9) {
       ++is_short;
-      path.center_interior(u, d, F);
-      path.interior_path().gradient(path.functional(), u, G);
+      path.center(u, d, F);
+      path.gradient(u, G);
       G.update(-1., F, 1.);
       EXPECT_LE(G.norm2(), 1e-10 * F.norm2()) << "F has followed the targets";
       solve_for(centered);
-      if (path.longest_interior_step(u, centered) > t) {
+      if (path.longest_step(u, centered) > t) {
         ++longer;
         d.assign(centered);
       } else {
-        path.take_back_interior();
-        EXPECT_DOUBLE_EQ(path.longest_interior_step(u, d), t);
+        path.take_back();
+        EXPECT_DOUBLE_EQ(path.longest_step(u, d), t);
       }
     }
-    const double taken = path.advance_interior(u, d);
+    const double taken = path.advance(u, d);
     EXPECT_GE(taken, t * (1 - 1e-12));
     u.update(taken, d, 1.);
     if (step > 2) {
-      EXPECT_LT(path.interior_path().gap(), 1.5 * gap);
+      EXPECT_LT(path.gap(), 1.5 * gap);
     }
   }
-  EXPECT_LE(path.interior_path().gap(), 1e-8);
+  EXPECT_LE(path.gap(), 1e-8);
   EXPECT_GE(is_short, 3);
   EXPECT_GE(longer, 2 * is_short / 3);
 }

@@ -123,38 +123,10 @@ std::array<double, 3> sums(const Comm &comm, const ContactNodes &points, const D
   return all;
 }
 
-} // namespace
-
-InteriorPath::InteriorPath(const SmoothedFunctional &functional, const Vector &u, const double load)
-    : at_("rpc::contact::interior", functional.points().size()),
-      aim_("rpc::contact::interior_target", functional.points().size()),
-      state_("rpc::contact::interior_state", functional.points().size())
-{
-  const ContactNodes &c = functional.points().points;
-  const double soft = softest(*u.getMap()->getComm(), c), largest = largest_penetration(c, u);
-  pressure_ = load > 0 ? load : soft * largest;
-  length_ = std::max(largest, pressure_ / soft);
-  join(functional, u);
-}
-
-void InteriorPath::join(const SmoothedFunctional &functional, const Vector &u)
-{
-  mu_ = interior_rules.first_mu * pressure_ * length_;
-  join_all(functional.points().points, u, pressure_, mu_, interior_rules.start_slope * pressure_ / length_, at_);
-}
-
-void InteriorPath::rejoin_where_it_creeps(const SmoothedFunctional &functional, const Vector &u)
-{
-  if (short_steps_ < interior_rules.many_short_steps) return;
-  short_steps_ = 0;
-  pressure_ *= interior_rules.more_pressure;
-  join(functional, u);
-}
-
-DeviceView<double ***> InteriorPath::blocks(const SmoothedPoints &points) const
+/// (points, dim, dim) What the linearized law adds to K [N/m].                                                  (5.18)
+DeviceView<double ***> interior_blocks(const SmoothedPoints &points, const DeviceView<InteriorPoint *> &at)
 {
   const SmoothedPoints s = points;
-  const auto at = at_;
   const int dim = s.points.dim;
   const DeviceView<double ***> block("rpc::contact::interior_blocks", s.size(), dim, dim);
   Kokkos::parallel_for(
@@ -170,10 +142,42 @@ DeviceView<double ***> InteriorPath::blocks(const SmoothedPoints &points) const
   return block;
 }
 
-void InteriorPath::gradient(const SmoothedFunctional &functional, const Vector &u, Vector &F) const
+} // namespace
+
+InteriorPath::InteriorPath(const SmoothedFunctional &functional, RCP<UpdatedOperator> hessian, const Vector &u,
+                           const double load)
+    : functional_(functional), hessian_(std::move(hessian)), at_("rpc::contact::interior", functional.points().size()),
+      aim_("rpc::contact::interior_target", functional.points().size()),
+      state_("rpc::contact::interior_state", functional.points().size())
 {
-  functional.elastic_gradient(u, F);
-  const SmoothedPoints s = functional.points();
+  const ContactNodes &c = functional.points().points;
+  const double soft = softest(*u.getMap()->getComm(), c), largest = largest_penetration(c, u);
+  pressure_ = load > 0 ? load : soft * largest;
+  length_ = std::max(largest, pressure_ / soft);
+  join(u);
+}
+
+void InteriorPath::join(const Vector &u)
+{
+  mu_ = interior_rules.first_mu * pressure_ * length_;
+  join_all(functional_.points().points, u, pressure_, mu_, interior_rules.start_slope * pressure_ / length_, at_);
+}
+
+void InteriorPath::linearize(const Vector &u, Vector &F)
+{
+  if (short_steps_ >= interior_rules.many_short_steps) {
+    short_steps_ = 0;
+    pressure_ *= interior_rules.more_pressure;
+    join(u);
+  }
+  hessian_->set(functional_.points().points, interior_blocks(functional_.points(), at_));
+  gradient(u, F);
+}
+
+void InteriorPath::gradient(const Vector &u, Vector &F) const
+{
+  functional_.elastic_gradient(u, F);
+  const SmoothedPoints s = functional_.points();
   const auto at = at_;
   const auto aim = aim_;
   const DeviceView<double *> p("rpc::contact::interior_pressure", s.size());
@@ -191,9 +195,9 @@ void InteriorPath::gradient(const SmoothedFunctional &functional, const Vector &
   add_contact_force(s.points, p, F);
 }
 
-void InteriorPath::correct(const SmoothedFunctional &functional, const Vector &u, const Vector &d, Vector &F)
+void InteriorPath::correct(const Vector &u, const Vector &d, Vector &F)
 {
-  const SmoothedPoints s = functional.points();
+  const SmoothedPoints s = functional_.points();
   const auto change = changes_along(s, at_, aim_, u, d);
   const double t = longest_of_all(*u.getMap()->getComm(), s, change, at_);
   aim_mu_ = aimed_mu(mu_, t);
@@ -207,15 +211,15 @@ void InteriorPath::correct(const SmoothedFunctional &functional, const Vector &u
   aim_ = next;
 }
 
-double InteriorPath::longest_step(const SmoothedFunctional &functional, const Vector &u, const Vector &d) const
+double InteriorPath::longest_step(const Vector &u, const Vector &d) const
 {
-  const SmoothedPoints &s = functional.points();
+  const SmoothedPoints &s = functional_.points();
   return longest_of_all(*u.getMap()->getComm(), s, changes_along(s, at_, aim_, u, d), at_);
 }
 
-void InteriorPath::center(const SmoothedFunctional &functional, const Vector &u, const Vector &d, Vector &F)
+void InteriorPath::center(const Vector &u, const Vector &d, Vector &F)
 {
-  const SmoothedPoints s = functional.points();
+  const SmoothedPoints s = functional_.points();
   const auto change = changes_along(s, at_, aim_, u, d);
   const double t = std::min(1., longest_of_all(*u.getMap()->getComm(), s, change, at_) + interior_rules.longer_by),
                mu = aim_mu_, range = interior_rules.range;
@@ -232,9 +236,9 @@ void InteriorPath::center(const SmoothedFunctional &functional, const Vector &u,
   aim_ = next;
 }
 
-double InteriorPath::advance(const SmoothedFunctional &functional, const Vector &u, const Vector &d)
+double InteriorPath::advance(const Vector &u, const Vector &d)
 {
-  const SmoothedPoints s = functional.points();
+  const SmoothedPoints s = functional_.points();
   const auto at = at_;
   const auto change = changes_along(s, at, aim_, u, d);
   const double t = longest_of_all(*u.getMap()->getComm(), s, change, at);
@@ -260,17 +264,17 @@ double InteriorPath::advance(const SmoothedFunctional &functional, const Vector 
   return t;
 }
 
-ActiveSetChoice InteriorPath::choice(const SmoothedFunctional &functional, const ActiveSet &present) const
+ActiveSetChoice InteriorPath::choice() const
 {
-  const ContactNodes c = functional.points().points;
+  const ContactNodes c = functional_.points().points;
   ActiveSetChoice choice{DeviceView<State *>("rpc::contact::next_state", c.size()),
                          DeviceView<double *>("rpc::contact::interior_pressure", c.size())};
   const auto at = at_;
-  const auto state = state_, now = present.state, next = choice.state;
+  const auto state = state_, next = choice.state;
   const auto p = choice.pressure;
   Kokkos::parallel_for(
       "rpc::contact::interior_states", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        next(i) = c.fixed(i) ? now(i) : state(i);
+        next(i) = state(i);
         p(i) = at(i).pressure;
       });
   Kokkos::fence();

@@ -259,27 +259,10 @@ void Iterate::take_active_set(const ActiveSetChoice &choice, Vector &u)
   update_stiffness(u);
 }
 
-void Iterate::start_interior_path(const Vector &u)
+InteriorPath Iterate::interior_path(const Vector &u) const
 {
-  interior_.emplace(functional_, u,
-                    std::max(pressure_bound_ / start_rules.beyond_reach, interior_rules.above_start * start_pressure_));
-}
-
-void Iterate::linearize_interior(const Vector &u, Vector &F)
-{
-  interior_->rejoin_where_it_creeps(functional_, u);
-  hessian_->set(points_, interior_->blocks(functional_.points()));
-  interior_->gradient(functional_, u, F);
-}
-
-void Iterate::correct_interior(const Vector &u, const Vector &d, Vector &F)
-{
-  interior_->correct(functional_, u, d, F);
-}
-
-void Iterate::center_interior(const Vector &u, const Vector &d, Vector &F)
-{
-  interior_->center(functional_, u, d, F);
+  return {functional_, hessian_, u,
+          std::max(pressure_bound_ / start_rules.beyond_reach, interior_rules.above_start * start_pressure_)};
 }
 
 double Iterate::replace_multipliers(const DeviceView<double *> &p, const DeviceView<double **> &q)

@@ -163,7 +163,7 @@ bool ActiveSetLoop::newton_hands_over(MinimizationSteps &steps)
 
 void ActiveSetLoop::take_path(const Vector &u)
 {
-  iterate_.start_interior_path(u);
+  interior_.emplace(iterate_.interior_path(u));
   path_ = Path::begun;
   method_ = Method::interior_path;
 }

@@ -15,12 +15,12 @@ using solver::MinimizationSteps;
 /// Whether the states that the path leads to are to be tried, or taken; then they are the next choice.
 bool ActiveSetLoop::leaves_path()
 {
-  const auto &path = iterate_.interior_path();
+  const contact::InteriorPath &path = *interior_;
   const bool ends = path.gap() <= path_rules.last_gap || path_steps_ >= solver::newton_rules.most_inner_steps;
   if (!ends && !(path.settled() && path.gap() <= trial_gap_)) return false;
   if (ends) path_ = Path::behind;
   trial_gap_ = path_rules.next_trial * path.gap();
-  start_over(iterate_.end_of_interior_path(), path_rules.trial_changes); // (5.20)
+  start_over(path.choice(), path_rules.trial_changes); // (5.20)
   return true;
 }
 
@@ -29,7 +29,7 @@ ActiveSetLoop::Status ActiveSetLoop::step_on_path(MinimizationSteps &steps)
   if (leaves_path()) return Status::goes_on;
   const Vector &u = solver::tpetra(steps.at().getX());
   const auto direction = rcp(new Vector(u.getMap()));
-  const double t = solve_interior(steps.context(), u, *direction) ? iterate_.advance_interior(u, *direction) : 0;
+  const double t = solve_interior(steps.context(), u, *direction) ? interior_->advance(u, *direction) : 0;
   if (!(t > 0)) {
     path_ = Path::behind;
     return leave_to_newton(steps);
@@ -67,20 +67,20 @@ bool ActiveSetLoop::solve_interior(solver::NewtonContext &context, const Vector 
     return true;
   };
   Vector F(u.getMap());
-  iterate_.linearize_interior(u, F);
+  interior_->linearize(u, F);
   if (!solve(F, direction, path_rules.forcing)) return false;
   direction.scale(-1.);
-  iterate_.correct_interior(u, direction, F);
+  interior_->correct(u, direction, F);
   if (!improve(F, direction)) return false;
-  double t = iterate_.longest_interior_step(u, direction);
+  double t = interior_->longest_step(u, direction);
   for (int times = 0; times < path_rules.most_centerings && t < path_rules.long_enough; ++times) {
-    iterate_.center_interior(u, direction, F);
+    interior_->center(u, direction, F);
     Vector centered(direction, Teuchos::Copy);
-    const double longer = improve(F, centered) ? iterate_.longest_interior_step(u, centered) : 0;
+    const double longer = improve(F, centered) ? interior_->longest_step(u, centered) : 0;
     if (longer > t)
       direction.assign(centered);
     else
-      iterate_.take_back_interior();
+      interior_->take_back();
     if (longer < t + path_rules.least_gain) break;
     t = longer;
   }

@@ -124,7 +124,8 @@ private:
   GO fewest_changes_ = 0;     // fewest points that one of them has changed; 0: there was none
   double left_ = std::numeric_limits<double>::infinity(); // so many more would follow at this rate
   std::array<double, 3> levers_{}; // of the last ones, the last one first: overshoot o as o / (1 - o)
-  enum class Path { ahead, begun, behind } path_ = Path::ahead; // the interior-point method
+  enum class Path { ahead, begun, behind } path_ = Path::ahead; // the interior-point method,
+  std::optional<contact::InteriorPath> interior_;               // which is there when it has begun
   int path_steps_ = 0;
   double trial_gap_; // of the path, at which the states that it leads to are tried
 };

@@ -6,7 +6,6 @@
 #include "rpc/contact/interior_path.hpp"
 #include "rpc/contact/lagged_bounds.hpp"
 
-#include <optional>
 #include <vector>
 
 namespace rpc::contact
@@ -71,26 +70,8 @@ public:
   /// multipliers were given. The functional and its gradients do not change. (9.8)
   void hold_by_contact();
 
-  // The interior-point method: see interior_path.hpp.
-  void start_interior_path(const Vector &u);
-  /// Updates hessian() for the linearized law, restarts the path where steps are short, and sets the right side F.                            (5.18)
-  void linearize_interior(const Vector &u, Vector &F);
-  /// Corrector: F becomes the right side for the targets that the predictor step d gives.                      (5.19)
-  void correct_interior(const Vector &u, const Vector &d, Vector &F);
-  /// The part of the step d that can be taken, at most 1.                                                       (5.19)
-  double longest_interior_step(const Vector &u, const Vector &d) const
-  {
-    return interior_->longest_step(functional_, u, d);
-  }
-  /// F: the right side with centred targets, which allow a longer step along d.                                (5.19a)
-  void center_interior(const Vector &u, const Vector &d, Vector &F);
-  /// Restores the targets from before center_interior().
-  void take_back_interior() { interior_->take_back(); }
-  /// @return the length of the step that was taken along d                                                    (5.19)
-  double advance_interior(const Vector &u, const Vector &d) { return interior_->advance(functional_, u, d); }
-  const InteriorPath &interior_path() const { return *interior_; }
-  /// The active set that the path leads to.                                                                    (5.20)
-  ActiveSetChoice end_of_interior_path() const { return interior_->choice(functional_, active_); }
+  /// The interior-point method from u on, by hessian(). It refers to this object.                                 (5.16)
+  InteriorPath interior_path(const Vector &u) const;
 
   // Multipliers and penalties.
   /// lambda_i <- Psi_i'(v_i(u)). @return |change|_2 / |lambda|_2, over free contact nodes, 0 if nothing changed   paper (11), (5.1)
@@ -165,7 +146,6 @@ private:
   ActiveSet active_;               // that hessian() belongs to
   double spring_ = 0;              // weak springs at nodes that are not closed, in units of the points' scaling
   bool multipliers_given_ = false; // by a start
-  std::optional<InteriorPath> interior_;
   LaggedBounds lagged_;
   DeviceView<double *> bounds_before_; // (points) of the last minimization [Pa]; empty: no problem had them given
 };
