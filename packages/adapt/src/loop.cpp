@@ -4,6 +4,7 @@
 #include "motions.hpp"
 #include "next_mesh.hpp"
 #include "rpc/adapt/solve.hpp"
+#include "rpc/analysis/run_steps.hpp"
 #include "rpc/bound/rules.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/interrupt.hpp"
@@ -303,61 +304,59 @@ void count_earlier_steps(const Task &task, Solution &s, const RCP<const Comm> &c
                                          fixed_by_load(task.model), task.step.uzawa.tolerance);
 }
 
-/// Load steps, each on meshes of its own. Where one does not converge, the solution is the one before, with its `failure`. An interrupted run leaves a checkpoint of the last step that was solved before the signal
-/// came: a step that it meets may end in other bits, for predictions are cut short.
+/// Load steps, each on meshes of its own, for run_steps(). A step that a signal meets may end in other bits, for predictions are cut short: the
+/// checkpoint is that of the step before.
+class StepsOnMeshes
+{
+public:
+  /// @param from  none: at rest
+  StepsOnMeshes(const Task &task, std::optional<analysis::HistoryState> from, const RCP<const Comm> &comm,
+                const Listener &listener)
+      : task_(task), comm_(comm), listener_(listener), kept_(std::move(from))
+  {
+    if (kept_) resumed_ = step_of(*kept_);
+  }
+
+  Solution solve(const double t, const Solution *const last)
+  {
+    const Solution *const earlier = last || !resumed_ ? last : &*resumed_;
+    Task step = task_;
+    step.time = t;
+    Solution s = solve_adaptively(step, earlier, comm_, listener_);
+    if (earlier) {
+      s.largest_estimate = std::max(earlier->largest_estimate, s.largest_estimate);
+      s.earlier_misread = misread_so_far(*earlier);
+    }
+    if (adapt::succeeded(s) && !interrupted(*comm_)) kept_ = state_of(s);
+    return s;
+  }
+
+  analysis::StepRecord broken_off(const double t, const std::string &reason) const
+  {
+    return analysis::broken_off(task_.model, {}, t, reason);
+  }
+
+  static bool succeeded(const Solution &s) { return adapt::succeeded(s); }
+  bool keep() const { return kept_ && analysis::keep_checkpoint(*kept_, listener_); }
+  void start_anew() {} // each mesh has a multigrid of its own
+
+private:
+  const Task &task_;
+  RCP<const Comm> comm_;
+  const Listener &listener_;
+  std::optional<analysis::HistoryState> kept_; // of the last step that no signal met
+  std::optional<Solution> resumed_;            // the step that the run goes on from
+};
+
 Solution solve_steps_adaptively(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
 {
   analysis::PhaseSeconds seconds;
-  std::optional<Solution> earlier; // the last step
-  if (auto state = analysis::resumed(listener, seconds)) earlier = step_of(std::move(*state));
-  const auto done = earlier ? earlier->history.size() : 0; // steps before this run
-  const double from = earlier ? earlier->time : -std::numeric_limits<double>::infinity();
-  const auto none_yet = [&] { return !earlier || earlier->history.size() == done; };
-  const auto keep = [&] { return earlier && analysis::keep_checkpoint(state_of(*earlier), listener); };
-  bool checkpoint_due = false, met_by_signal = false;
-  for (const double t : task.steps.times) {
-    if (t <= from) continue;
-    if (!none_yet() && interrupted(*comm)) {
-      if (!met_by_signal) keep();
-      earlier->failure = analysis::Failure{t, interruption() + " before the step", ExitCode::not_converged};
-      break;
-    }
-    Task step = task;
-    step.time = t;
-    bool solved = false;
-    try {
-      Solution s = solve_adaptively(step, earlier ? &*earlier : nullptr, comm, listener);
-      met_by_signal = interrupted(*comm);
-      if (met_by_signal && !(succeeded(s) && t == task.steps.times.back())) keep();
-      seconds += s.seconds;
-      s.seconds = seconds;
-      if (!s.has_results() && !none_yet()) {
-        earlier->failure = analysis::Failure{s.time, s.uzawa.reason, ExitCode::not_converged};
-        earlier->history = std::move(s.history);
-        earlier->seconds = seconds;
-        break;
-      }
-      s.energy_rounding = std::max(earlier ? earlier->energy_rounding : 0, analysis::energy_rounding(task, s));
-      s.largest_estimate = std::max(earlier ? earlier->largest_estimate : 0, s.largest_estimate);
-      if (earlier) s.earlier_misread = misread_so_far(*earlier);
-      earlier = std::move(s);
-      solved = true;
-      if (listener.load_step && earlier->has_results()) listener.load_step(*earlier);
-    } catch (const Error &error) { // on all ranks; what the steps before have found is not lost
-      if (none_yet()) throw analysis::error_at(t, error, !earlier);
-      if (!solved && interrupted(*comm)) keep();
-      earlier->failure = analysis::Failure{t, one_line(error.what()), error.code()};
-      if (!solved) earlier->history.push_back(analysis::broken_off(task.model, {}, t, earlier->failure->reason));
-      break;
-    }
-    if (!succeeded(*earlier)) break;
-    const int every = task.steps.checkpoint_every;
-    checkpoint_due |= every > 0 && earlier->history.size() % every == 0;
-    if (checkpoint_due && !met_by_signal) checkpoint_due = !keep();
-  }
-  count_earlier_steps(task, *earlier, comm);
-  analysis::judge_balance(task, *earlier);
-  return std::move(*earlier);
+  auto from = analysis::resumed(listener, seconds);
+  const auto after = from ? std::optional<double>(from->last.time) : std::nullopt;
+  StepsOnMeshes steps(task, std::move(from), comm, listener);
+  auto s = analysis::run_steps<Solution>(task, after, *comm, listener, seconds, steps);
+  count_earlier_steps(task, *s, comm);
+  return *std::move(s);
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 
 #include "body/obstacle_force.hpp"
 #include "rpc/analysis/rules.hpp"
+#include "rpc/analysis/run_steps.hpp"
 #include "rpc/contact/node_columns.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/interrupt.hpp"
@@ -178,111 +179,91 @@ Error error_at(const double t, const Error &error, const bool first)
 namespace
 {
 
-/// One of several load steps; its record is added if it converges, and is the last of the solution's history in any case.
-Solution solve_one_of_steps(const Task &task, const double t, LoadHistory &history, const int assemblies_before,
-                            std::vector<StepRecord> &records, const PhaseSeconds &seconds, const Listener &listener)
+/// What follows a solve: the time that it took, what `solved` adds, and what was skipped.
+void finish(const Task &task, const Problem &problem, const Listener &listener, Solution &s)
 {
-  Solution s;
-  static_cast<StepSolution &>(s) = history.advance(t, listener.step);
-  s.discretization = history.problem().discretization();
-  s.mesh_options = task.mesh;
-  s.time = history.last().time;
-  s.body = history.last().body;
-  s.matrix_assemblies = assemblies_before + history.problem().stiffness()->assemblies();
-  s.history = records;
-  s.history.push_back(history.last());
-  if (s.uzawa.converged) records.push_back(history.last());
-  s.seconds = seconds;
   s.seconds.prediction += s.prediction_seconds;
   s.seconds.setup += s.linear.setup_seconds;
   s.seconds.solve += s.solve_seconds;
   if (!s.has_results()) take_back_results(s);
-  if (listener.solved) listener.solved(history.problem(), s);
+  if (listener.solved) listener.solved(problem, s);
   note_skipped(task, s);
-  return s;
 }
 
-/// Has the last step that converged kept, if there is one. Collective.
-/// @return whether it was
-bool keep_last(const Task &task, const LoadHistory &history, const std::vector<StepRecord> &records,
-               const int assemblies, const Listener &listener)
+/// Load steps on one mesh, for run_steps().
+class StepsOnMesh
 {
-  if (!history.memory()) return false;
-  HistoryState state{
-      history.problem().discretization(), task.mesh, *history.memory(), std::nullopt, records, assemblies};
-  if (history.before()) state.before = *history.before();
-  return keep_checkpoint(state, listener);
-}
+public:
+  /// @param from  none: at rest
+  StepsOnMesh(const Task &task, LoadHistory &history, std::optional<HistoryState> from, const Listener &listener)
+      : task_(task), history_(history), listener_(listener)
+  {
+    history_.balance_energies(task_.steps);
+    if (!from) return;
+    records_ = std::move(from->records);
+    assemblies_before_ = from->matrix_assemblies;
+    history_.go_on_from(std::move(from->last), std::move(from->before));
+  }
+
+  Solution solve(const double t, const Solution *)
+  {
+    Solution s;
+    static_cast<StepSolution &>(s) = history_.advance(t, listener_.step);
+    s.discretization = history_.problem().discretization();
+    s.mesh_options = task_.mesh;
+    s.time = history_.last().time;
+    s.body = history_.last().body;
+    s.matrix_assemblies = assemblies();
+    s.history = records_;
+    s.history.push_back(history_.last());
+    if (s.uzawa.converged) records_.push_back(history_.last());
+    finish(task_, history_.problem(), listener_, s);
+    return s;
+  }
+
+  StepRecord broken_off(double, const std::string &reason) const { return history_.broken_off(reason); }
+  static bool succeeded(const Solution &s) { return s.has_results(); }
+
+  bool keep() const
+  {
+    if (!history_.memory()) return false;
+    HistoryState state{history_.problem().discretization(), task_.mesh, *history_.memory(), {}, records_, assemblies()};
+    if (history_.before()) state.before = *history_.before();
+    return keep_checkpoint(state, listener_);
+  }
+
+  void start_anew() { history_.start_anew(); }
+
+private:
+  int assemblies() const { return assemblies_before_ + history_.problem().stiffness()->assemblies(); }
+
+  const Task &task_;
+  LoadHistory &history_;
+  const Listener &listener_;
+  std::vector<StepRecord> records_; // of steps that have converged
+  int assemblies_before_ = 0;
+};
 
 } // namespace
 
 Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
 {
-  Solution s;
   PhaseSeconds seconds;
-  const auto from = resumed(listener, seconds);
+  auto from = resumed(listener, seconds);
   const auto mesh = from ? from->discretization.mesh : make_mesh(task.mesh, comm, seconds);
+  const auto after = from ? std::optional<double>(from->last.time) : std::nullopt;
   Task first = task;
-  first.time = from ? from->last.time : task.steps.times.front();
+  first.time = after.value_or(task.steps.times.front());
   const auto problem = make_problem(first, mesh, seconds);
   LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver,
                       coarser_meshes(first, task.mesh, comm));
-  history.balance_energies(task.steps);
-  std::vector<StepRecord> records;
-  double rounding = 0;
-  int assemblies_before = 0;
-  if (from) {
-    records = from->records;
-    assemblies_before = from->matrix_assemblies;
-    history.go_on_from(from->last, from->before);
-  }
+  StepsOnMesh steps(task, history, std::move(from), listener);
   try {
     if (listener.mesh) listener.mesh(problem->discretization(), problem->step(first.time).contact);
   } catch (const Error &error) { // on all ranks
     throw error_at(first.time, error, true);
   }
-  bool checkpoint_due = false;
-  for (const double t : task.steps.times) {
-    if (from && t <= from->last.time) continue;
-    if (!s.history.empty() && interrupted(*comm)) { // a step that converges without iterations does not ask
-      keep_last(task, history, records, s.matrix_assemblies, listener);
-      s.failure = Failure{t, interruption() + " before the step", ExitCode::not_converged};
-      break;
-    }
-    bool solved = false;
-    try {
-      Solution next = solve_one_of_steps(task, t, history, assemblies_before, records, seconds, listener);
-      seconds = next.seconds;
-      next.energy_rounding = rounding = std::max(rounding, energy_rounding(task, next));
-      if (!next.has_results() && !s.history.empty()) {
-        s.failure = Failure{next.time, next.uzawa.reason, ExitCode::not_converged};
-        s.history = std::move(next.history);
-        s.matrix_assemblies = next.matrix_assemblies;
-        s.seconds = seconds;
-      } else {
-        s = std::move(next);
-      }
-      solved = true;
-      if (listener.load_step && s.has_results() && !s.failure) listener.load_step(s);
-    } catch (const Error &error) { // on all ranks; what the steps before have found is not lost
-      const StepRecord broken = history.broken_off(one_line(error.what()));
-      if (s.history.empty()) throw error_at(broken.time, error, records.empty());
-      if (!solved) s.history.push_back(broken);
-      s.failure = Failure{solved ? s.time : broken.time, broken.reason, error.code()};
-      break;
-    }
-    const int every = task.steps.checkpoint_every;
-    checkpoint_due |= every > 0 && records.size() % every == 0;
-    if (!s.has_results() || s.failure) {
-      if (interrupted(*comm)) keep_last(task, history, records, s.matrix_assemblies, listener);
-      break;
-    }
-    if (!checkpoint_due) continue;
-    checkpoint_due = !keep_last(task, history, records, s.matrix_assemblies, listener);
-    if (t < task.steps.times.back()) history.start_anew();
-  }
-  judge_balance(task, s);
-  return s;
+  return run_steps<Solution>(task, after, *comm, listener, seconds, steps).value_or(Solution{});
 }
 
 Solution solve_on(const Task &task, const MadeMesh &made, const Solution *const previous, const Solution *const earlier,
@@ -344,15 +325,10 @@ Solution solve_on(const Task &task, const MadeMesh &made, const Solution *const 
     s.body = history.last().body;
   }
   s.matrix_assemblies = problem->stiffness()->assemblies();
-  if (!s.has_results()) take_back_results(s);
   if (previous) // at the points that the obstacle has where it is now
     s.start_pressure = contact::at_points(
         s.step.contact, *contact::node_columns(step.contact, starts.front().multiplier.normal, d.mesh->owned_nodes));
-  if (listener.solved) listener.solved(*problem, s);
-  note_skipped(task, s);
-  s.seconds.prediction += s.prediction_seconds;
-  s.seconds.setup = s.linear.setup_seconds;
-  s.seconds.solve = s.solve_seconds;
+  finish(task, *problem, listener, s);
   return s;
 }
 
