@@ -3,6 +3,7 @@
 
     python3 rough_peers.py --rpc=build/rpc [--grids=64,128] [--reference=512] [--depth=0.25] [--element=Q1] [--flatness=1] [--highest=8]
                            [--hardnesses=inf,0.3] [--csv=FILE]
+    python3 rough_peers.py --read=FILE                                  # tables of an earlier --csv
 
 One surface for all, made by rpc: period 1, Hurst exponent 0.8, wave numbers from 4 to --highest, rms slope 1, seed 1. E* = 1, mean pressure 0.05. The
 hardness is the largest pressure that the foundation bears; inf is elastic contact.
@@ -15,6 +16,8 @@ hardness is the largest pressure that the foundation bears; inf is elastic conta
 The reference is ContactMechanics on --reference points a period, extrapolated by that of half as many (energy with the second power of the spacing, area with
 the first). Error: relative difference from it. "Extrapolated": from the two finest grids in the same way; its time is that of both. Times are seconds of a
 processor, of one thread, so that other programs on the machine hardly matter; those of rpc are of its whole process, of the others of the solve.
+
+The second table has the least time with which a program has an error of at most so much, all its finer grids too; the extrapolated values count as the finest.
 
 tamaas and ContactMechanics come from PyPI; without network: pip download tamaas ContactMechanics -d FOLDER where there is one, then
 pip install --no-index --find-links=FOLDER tamaas ContactMechanics. A peer that is missing is left out with a word. Without ContactMechanics there is no
@@ -49,6 +52,7 @@ except ImportError:
     PeriodicFFTElasticHalfSpace = None
 
 POISSON, PRESSURE = 0.3, 0.05
+ENERGY_ERRORS, AREA_ERRORS = (0.01, 0.003, 0.001), (0.1, 0.03, 0.01)
 MODULUS = 1 - POISSON**2  # E* = 1
 OEDOMETRIC = MODULUS * (1 - POISSON) / ((1 + POISSON) * (1 - 2 * POISSON))
 WAVES = {"Lowest Wave Number": 4, "RMS Slope": 1, "Seed": 1}
@@ -151,11 +155,32 @@ class Table:
                 writer.writeheader()
                 writer.writerows(self.rows)
 
+    def read(self, file):
+        with open(file, encoding="utf-8", newline="") as table:
+            for row in csv.DictReader(table):
+                self.rows.append({key: value if key in ("problem", "program", "points") else float(value) for key, value in row.items()})
+
+    def seconds_to(self, rows, column, error):
+        """Of one program; the rows are from the coarsest to the finest. None where the finest misses."""
+        good = None
+        for row in reversed(rows):
+            if abs(row[column]) > error:
+                break
+            good = row["seconds"]
+        return good
+
     def __str__(self):
         lines = ["| problem | hardness | program | points a period | area | error | energy | error | processor time [s] |", "|---|--:|---|--:|--:|--:|--:|--:|--:|"]
+        programs = {}
         for row in self.rows:
             lines.append(f"| {row['problem']} | {row['hardness']:g} | {row['program']} | {row['points']} | {row['area']:.5f} | {100 * row['area error']:+.2f} % | {row['energy']:.5e} | "
-                         f"{100 * row['energy error']:+.2f} % | {row['seconds']:.1f} |")
+                         f"{100 * row['energy error']:+.3f} % | {row['seconds']:.2f} |")
+            programs.setdefault((row["problem"], row["hardness"], row["program"]), []).append(row)
+        lines += ["", "| problem | hardness | program | " + " | ".join([f"energy to {100 * error:g} %" for error in ENERGY_ERRORS] + [f"area to {100 * error:g} %" for error in AREA_ERRORS]) + " |",
+                  "|---|--:|---|" + "--:|" * (len(ENERGY_ERRORS) + len(AREA_ERRORS))]
+        for (problem, hardness, program), rows in programs.items():
+            times = [self.seconds_to(rows, "energy error", error) for error in ENERGY_ERRORS] + [self.seconds_to(rows, "area error", error) for error in AREA_ERRORS]
+            lines.append(f"| {problem} | {hardness:g} | {program} | " + " | ".join("" if time is None else f"{time:.2f}" for time in times) + " |")
         return "\n".join(lines)
 
 
@@ -191,7 +216,8 @@ def compare(options, hardness, folder, table):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rpc", required=True, type=os.path.abspath)
+    parser.add_argument("--rpc", type=os.path.abspath)
+    parser.add_argument("--read", help="prints the tables of this file of an earlier --csv, and runs nothing")
     parser.add_argument("--grids", default="64,128", type=lambda text: [int(n) for n in text.split(",")], help="points a period, rising")
     parser.add_argument("--reference", default=512, type=int)
     parser.add_argument("--depth", default=0.25, type=float)
@@ -201,10 +227,16 @@ def main():
     parser.add_argument("--hardnesses", default="inf,0.3", type=lambda text: [float(x) for x in text.split(",")])
     parser.add_argument("--csv", help="file for the rows, too")
     options = parser.parse_args()
+    table = Table(options.csv)
+    if options.read:
+        table.read(options.read)
+        print(table)
+        return
+    if not options.rpc:
+        parser.error("--rpc or --read must be given")
     for name, module in (("tamaas", tamaas), ("ContactMechanics", PeriodicFFTElasticHalfSpace)):
         if not module:
             print(f"rough_peers.py: {name} is missing and left out: pip install {name}", file=sys.stderr)
-    table = Table(options.csv)
     for hardness in options.hardnesses:
         with tempfile.TemporaryDirectory(prefix="rpc_rough_peers_") as folder:
             compare(options, hardness, folder, table)

@@ -35,7 +35,7 @@ class RoughBenchmarks(RpcTestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         for peer in ("tamaas", "ContactMechanics"):
             self.assertIn(f"{peer} is missing and left out: pip install {peer}", done.stderr)
-        self.assertEqual(done.stdout.count("| layer | inf | rpc | "), 3, done.stdout)
+        self.assertEqual(done.stdout.count("| layer | inf | rpc | "), 4, done.stdout)
         self.assertIn("| layer | 0.3 | rpc | extrapolated | ", done.stdout)
 
 
