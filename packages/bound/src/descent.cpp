@@ -5,16 +5,6 @@
 
 namespace rpc::bound
 {
-
-double inner_product(const Tractions &x, const Tractions &y)
-{
-  double sum = 0;
-  Kokkos::parallel_reduce(
-      "rpc::bound::inner_product", device_range(static_cast<LO>(x.extent(0))),
-      KOKKOS_LAMBDA(const LO i, double &part) { part += x(i) * y(i); }, sum);
-  return sum;
-}
-
 namespace
 {
 
@@ -31,8 +21,7 @@ void combine(const double a, const Tractions &x, const double b, const Tractions
 
 Descent::Descent(Derivative derivative, Answer answer, Product product, const Tractions &t)
     : derivative_(std::move(derivative)), answer_(std::move(answer)), product_(std::move(product)), t_(t),
-      g_("rpc::bound::g", t.extent(0)), z_("rpc::bound::z", t.extent(0)), d_("rpc::bound::d", t.extent(0)),
-      Ad_("rpc::bound::Ad", t.extent(0))
+      g_("rpc::bound::g", t.extent(0)), z_("rpc::bound::z", t.extent(0)), d_("rpc::bound::d", t.extent(0))
 {
   derivative_(t_, true, g_);
 }
@@ -44,12 +33,13 @@ double Descent::step()
   if (!(rho > 0)) return 0;
   combine(rho_ > 0 ? rho / rho_ : 0, d_, -1, z_);
   rho_ = rho;
-  derivative_(d_, false, Ad_);
-  const double curvature = product_(d_, Ad_);
+  const Tractions &Ad = z_; // which is in d by now
+  derivative_(d_, false, Ad);
+  const double curvature = product_(d_, Ad);
   if (!(curvature > 0)) return 0;
   const double length = rho / curvature;
   combine(1, t_, length, d_);
-  combine(1, g_, length, Ad_);
+  combine(1, g_, length, Ad);
   return rho * length / 2;
 }
 

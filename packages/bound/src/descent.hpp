@@ -8,9 +8,6 @@
 namespace rpc::bound
 {
 
-/// The inner product of all entries, on one rank.
-double inner_product(const Tractions &x, const Tractions &y);
-
 /// One step of the method of conjugate gradients after the other, which lowers the energy of the tractions. Tractions stay in balance.
 class Descent
 {
@@ -30,7 +27,7 @@ private:
   Derivative derivative_;
   Answer answer_;
   Product product_;
-  Tractions t_, g_, z_, d_, Ad_;
+  Tractions t_, g_, z_, d_;
   double rho_ = 0;
 };
 

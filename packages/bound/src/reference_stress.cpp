@@ -293,9 +293,10 @@ Columns columns_of(const SplitCell &c)
   return {product(admissible, k.inverse), product(admissible, k.basis)};
 }
 
-DeviceView<double **> table_of(const Dense &x, const std::string &label)
+template <class View = DeviceView<double **>>
+View table_of(const Dense &x, const std::string &label)
 {
-  DeviceView<double **> table(label, x.rows, x.cols);
+  View table(label, x.rows, x.cols);
   const auto host = Kokkos::create_mirror_view(table);
   for (int i = 0; i < x.rows; ++i)
     for (int j = 0; j < x.cols; ++j) host(i, j) = x(i, j);
@@ -361,7 +362,7 @@ ReferenceStress reference_stress(const mesh::Element &element)
     for (int j = 0; j < all.cols; ++j)
       all(i, j) = j < r.tractions ? columns.of_tractions(i, j) : columns.inner(i, j - r.tractions);
   r.stress = table_of(all, "rpc::bound::stress");
-  r.by_column = table_of(transposed(all), "rpc::bound::by_column");
+  r.by_column = table_of<decltype(r.by_column)>(transposed(all), "rpc::bound::by_column");
   r.energy = energies(c, all);
   const PartPoints points = points_of_squares(element, c);
   const int per_part = static_cast<int>(points.weight.size()) / c.sides;

@@ -25,8 +25,9 @@ struct ReferenceStress {
   int columns() const { return tractions + inner; }
   int coefficients() const { return dim * (dim + 1) / 2 * sides * monomials; }
 
-  DeviceView<double **> stress;    ///< (coefficients, columns)
-  DeviceView<double **> by_column; ///< (columns, coefficients) the same
+  DeviceView<double **> stress; ///< (coefficients, columns)
+  /// (columns, coefficients) The same, each column in one piece.
+  Kokkos::View<double **, Kokkos::LayoutRight, Device> by_column;
   DeviceView<double ***>
       energy; ///< (pairs, columns, columns) int s_c t_d, symmetric, of components cd = 00 11 .. 01 02 .. 12 ..
   DeviceView<double ***> moment;    ///< (components, dim, columns) int s_c X_l, with X relative to the centre

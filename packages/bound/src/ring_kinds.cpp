@@ -6,7 +6,8 @@
 namespace rpc::bound
 {
 
-DeviceView<unsigned char *> free_components(const SpaceInput &in, const BoundaryTractions &boundary)
+DeviceView<unsigned char *> free_components(const SpaceInput &in, const BoundaryTractions &boundary,
+                                            const SlotExchange &of_facets)
 {
   constexpr double straight = 1e-12;
   DeviceView<unsigned char *> free("rpc::bound::free", in.facets.size());
@@ -29,13 +30,13 @@ DeviceView<unsigned char *> free_components(const SpaceInput &in, const Boundary
         free(f) = static_cast<unsigned char>(components | axis << 3);
       });
   // What is known of a facet without a vertex of this rank another one tells.
-  const auto served = in.facets.of_facets->served();
+  const auto served = of_facets.served();
   const DeviceView<double **> told("rpc::bound::told", served.extent(0), 1);
   Kokkos::parallel_for(
       "rpc::bound::tell_free_components", device_range(static_cast<LO>(served.extent(0))),
       KOKKOS_LAMBDA(const LO k) { told(k, 0) = free(served(k, 0)); });
-  const DeviceView<double **> fetched = in.facets.of_facets->fetched(told);
-  const SlotExchange::Rows row = in.facets.of_facets->rows();
+  const DeviceView<double **> fetched = of_facets.fetched(told);
+  const SlotExchange::Rows row = of_facets.rows();
   Kokkos::parallel_for(
       "rpc::bound::take_free_components", device_range(in.facets.size()), KOKKOS_LAMBDA(const LO f) {
         if (row(f, 0) >= 0) free(f) = static_cast<unsigned char>(fetched(row(f, 0), 0));

@@ -10,7 +10,8 @@ namespace rpc::bound
 {
 
 /// Which components of the traction of a facet are free, as bits, and times 8 the axis that it lies across; 3: none. Collective.
-DeviceView<unsigned char *> free_components(const SpaceInput &in, const BoundaryTractions &boundary);
+DeviceView<unsigned char *> free_components(const SpaceInput &in, const BoundaryTractions &boundary,
+                                            const SlotExchange &of_facets);
 
 /// Kinds of rings, and a ring of each.
 struct RingKinds {

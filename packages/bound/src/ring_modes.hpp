@@ -19,6 +19,18 @@ struct RingModes {
   {
     return 6 * static_cast<std::size_t>(ring) + own * in.facets.first_facet(ring);
   }
+  /// Factor of a facet's traction that makes it the one on the cell behind the facet.
+  KOKKOS_FUNCTION double toward(const LO ring, const int k) const
+  {
+    return in.facets.toward(in.facets.first_facet(ring) + k);
+  }
+  KOKKOS_FUNCTION void centre_of(const LO f, double (&centre)[3]) const
+  {
+    for (int i = 0; i < 3; ++i)
+      centre[i] = (in.coords(in.facets.node(f, 0), i) + in.coords(in.facets.node(f, 1), i) +
+                   in.coords(in.facets.node(f, 2), i)) /
+                  3;
+  }
   /// The place of a facet's mode among those of its ring.
   KOKKOS_FUNCTION int place(const int k, const int mode) const { return mode < 6 ? mode : 6 + own * k + mode - 6; }
   /// Which of the forces and moments along the axes the ring hands on, as bits.
@@ -115,27 +127,37 @@ struct FacetModes {
   }
 };
 
+/// What modes of a ring have in common: the middle of its edge, the unit of moments, what it hands on.
+struct RingFrame {
+  double middle[3], unit = 0;
+  int may;
+
+  template <int K>
+  KOKKOS_FUNCTION RingFrame(const RingModes<K> &modes, const LO ring) : may(modes.common(ring))
+  {
+    for (int i = 0; i < 3; ++i) {
+      const double a = modes.in.coords(modes.in.facets.edge(ring, 0), i),
+                   b = modes.in.coords(modes.in.facets.edge(ring, 1), i);
+      middle[i] = (a + b) / 2;
+      unit += (a - b) * (a - b);
+    }
+    unit = math::sqrt(unit);
+  }
+};
+
 /// The modes of a ring at one of its facets.
 template <int K>
 struct ModesAtFacet {
   using Share = FacetShare<K>;
   static constexpr int own = RingModes<K>::own;
-  double arm[3], unit = 0, toward; // from the middle of the edge to the centre; the unit of moments; of the normal
+  double arm[3], to_moment, to_linear, toward; // from the middle of the edge to the centre; factors; of the normal
   int may;
 
-  KOKKOS_FUNCTION ModesAtFacet(const RingModes<K> &modes, const LO ring, const int k)
-      : toward(modes.in.facets.toward(modes.in.facets.first_facet(ring) + k)), may(modes.common(ring))
+  /// @param centre  of the facet
+  KOKKOS_FUNCTION ModesAtFacet(const RingFrame &ring, const double (&centre)[3], const double sign)
+      : to_moment(sign * ring.unit), to_linear(sign / ring.unit), toward(sign), may(ring.may)
   {
-    const LO f = modes.in.facets.ring_facet(modes.in.facets.first_facet(ring) + k);
-    const auto &x = modes.in.coords;
-    for (int i = 0; i < 3; ++i) {
-      const double a = x(modes.in.facets.edge(ring, 0), i), b = x(modes.in.facets.edge(ring, 1), i);
-      arm[i] =
-          (x(modes.in.facets.node(f, 0), i) + x(modes.in.facets.node(f, 1), i) + x(modes.in.facets.node(f, 2), i)) / 3 -
-          (a + b) / 2;
-      unit += (a - b) * (a - b);
-    }
-    unit = math::sqrt(unit);
+    for (int i = 0; i < 3; ++i) arm[i] = centre[i] - ring.middle[i];
   }
   /// share += the sum of the modes, in the signs of the facet.
   template <class Real>
@@ -146,10 +168,9 @@ struct ModesAtFacet {
     for (int i = 0; i < 3; ++i) {
       const int a = (i + 1) % 3, b = (i + 2) % 3;
       share.force[i] += force[i];
-      share.moment[i] +=
-          (may >> (3 + i) & 1 ? toward * unit * common[3 + i] : 0) - (arm[a] * force[b] - arm[b] * force[a]);
+      share.moment[i] += (may >> (3 + i) & 1 ? to_moment * common[3 + i] : 0) - (arm[a] * force[b] - arm[b] * force[a]);
     }
-    for (int m = 0; m < own; ++m) share.rest[m] += (m < 3 ? toward / unit : toward) * of_facet[m];
+    for (int m = 0; m < own; ++m) share.rest[m] += (m < 3 ? to_linear : toward) * of_facet[m];
   }
   /// The transpose: common += ..., of_facet = ...
   KOKKOS_FUNCTION void reduce(const Share &share, double *common, double *of_facet) const
@@ -157,9 +178,9 @@ struct ModesAtFacet {
     for (int i = 0; i < 3; ++i) {
       const int a = (i + 1) % 3, b = (i + 2) % 3;
       if (may >> i & 1) common[i] += toward * (share.force[i] - (share.moment[a] * arm[b] - share.moment[b] * arm[a]));
-      if (may >> (3 + i) & 1) common[3 + i] += toward * unit * share.moment[i];
+      if (may >> (3 + i) & 1) common[3 + i] += to_moment * share.moment[i];
     }
-    for (int m = 0; m < own; ++m) of_facet[m] = (m < 3 ? toward / unit : toward) * share.rest[m];
+    for (int m = 0; m < own; ++m) of_facet[m] = (m < 3 ? to_linear : toward) * share.rest[m];
   }
 };
 

@@ -37,8 +37,8 @@ struct InvertRings {
       const LO f = in.facets.ring_facet(in.facets.first_facet(ring) + of_ring[s]);
       const double sign = in.facets.cell(f, 0) == c ? 1 : -1;
       ordinal[s] = in.facets.ordinal(f, in.facets.cell(f, 0) == c ? 0 : 1);
-      const ModesAtFacet<K> at(modes, ring, of_ring[s]);
       const FacetModes<K> of_facet(modes, f);
+      const ModesAtFacet<K> at(RingFrame(modes, ring), of_facet.frame.centre, modes.toward(ring, of_ring[s]));
       for (int mode = 0; mode < both; ++mode) {
         double y[both] = {}, t[per_facet];
         y[mode] = 1;
@@ -152,8 +152,9 @@ struct SolveRings {
     double common[6] = {};
     for (int i = 0; i < n; ++i) y[i] = 0;
     const float *const H = inverse.data() + first(kind(ring));
+    const RingFrame frame(modes, ring);
     for (int k = 0; k < facets; ++k) {
-      double of_facet[RingModes<K>::own];
+      double of_facet[RingModes<K>::own], centre[3];
       const LO f = modes.in.facets.ring_facet(modes.in.facets.first_facet(ring) + k);
       FacetShare<K> share;
       for (int i = 0; i < 3; ++i) {
@@ -161,15 +162,18 @@ struct SolveRings {
         share.moment[i] = shares(f, 3 + i);
       }
       for (int m = 0; m < FacetShare<K>::own; ++m) share.rest[m] = shares(f, 6 + m);
-      ModesAtFacet<K>(modes, ring, k).reduce(share, common, of_facet);
-      for (int m = 0; m < RingModes<K>::own; ++m) add(H + modes.place(k, 6 + m) * n, of_facet[m], n, y);
+      modes.centre_of(f, centre);
+      ModesAtFacet<K>(frame, centre, modes.toward(ring, k)).reduce(share, common, of_facet);
+      for (int m = 0; m < RingModes<K>::own; m += 3) add(H + modes.place(k, 6 + m) * n, of_facet + m, n, y);
     }
-    for (int m = 0; m < 6; ++m) add(H + m * n, common[m], n, y);
+    for (int m = 0; m < 6; m += 3) add(H + m * n, common + m, n, y);
   }
-  KOKKOS_FUNCTION static void add(const float *column, const double factor, const int n, float *y)
+  /// y += three columns times factors.
+  KOKKOS_FUNCTION static void add(const float *columns, const double *factor, const int n, float *y)
   {
-    const float by = static_cast<float>(factor);
-    for (int i = 0; i < n; ++i) y[i] += column[i] * by;
+    const float a = static_cast<float>(factor[0]), b = static_cast<float>(factor[1]), c = static_cast<float>(factor[2]);
+    const float *const second = columns + n, *const third = second + n;
+    for (int i = 0; i < n; ++i) y[i] += columns[i] * a + second[i] * b + third[i] * c;
   }
 };
 
@@ -179,12 +183,13 @@ struct ReadRings {
   RingModes<K> modes;
   DeviceView<float *> answer;
 
-  KOKKOS_FUNCTION void operator()(const LO f, const int e, FacetShare<K> &share) const
+  KOKKOS_FUNCTION void operator()(const LO f, const int e, const double (&centre)[3], FacetShare<K> &share) const
   {
     const LO ring = modes.in.facets.ring(f, e);
     const int k = modes.in.facets.place(f, e);
     const float *const of_ring = answer.data() + modes.first(ring);
-    ModesAtFacet<K>(modes, ring, k).expand(of_ring, of_ring + modes.place(k, 6), share);
+    ModesAtFacet<K>(RingFrame(modes, ring), centre, modes.toward(ring, k))
+        .expand(of_ring, of_ring + modes.place(k, 6), share);
   }
 };
 
@@ -198,7 +203,9 @@ struct ServeRings {
   KOKKOS_FUNCTION void operator()(const LO k) const
   {
     FacetShare<K> share;
-    read(served(k, 0), served(k, 1), share);
+    double centre[3];
+    read.modes.centre_of(served(k, 0), centre);
+    read(served(k, 0), served(k, 1), centre, share);
     for (int i = 0; i < 3; ++i) {
       out(k, i) = share.force[i];
       out(k, 3 + i) = share.moment[i];
@@ -217,10 +224,12 @@ struct GatherRings {
   KOKKOS_FUNCTION void operator()(const LO f) const
   {
     FacetShare<K> sum;
+    double centre[3];
+    read.modes.centre_of(f, centre);
     for (int e = 0; e < 3; ++e) {
       const LO there = row(f, e);
       if (there < 0) {
-        read(f, e, sum);
+        read(f, e, centre, sum);
         continue;
       }
       for (int i = 0; i < 3; ++i) {
@@ -235,8 +244,9 @@ struct GatherRings {
 
 } // namespace
 
-RingSolves::RingSolves(const SpaceInput &in, const BoundaryTractions &boundary, const SpaceForms &forms)
-    : in_(in), free_(free_components(in, boundary))
+RingSolves::RingSolves(const SpaceInput &in, const BoundaryTractions &boundary, const SpaceForms &forms,
+                       const SpaceExchanges &exchanges)
+    : in_(in), exchanges_(exchanges), free_(free_components(in, boundary, exchanges.of_facets))
 {
   const RingKinds kinds = ring_kinds(in, free_);
   kind_ = kinds.kind;
@@ -283,7 +293,7 @@ void RingSolves::apply_of_order(const Tractions &g, const Tractions &z) const
   Kokkos::parallel_for("rpc::bound::solve_rings", device_range(in_.facets.num_rings()),
                        SolveRings<K>{modes, kind_, first_, inverse_, answer_, shares_});
   const ReadRings<K> read{modes, answer_};
-  const SlotExchange &edges = *in_.facets.of_edges;
+  const SlotExchange &edges = exchanges_.of_edges;
   const LO count = static_cast<LO>(edges.served().extent(0));
   const DeviceView<double **> served("rpc::bound::served_rings", count, FacetShare<K>::size);
   Kokkos::parallel_for("rpc::bound::serve_rings", device_range(count), ServeRings<K>{read, edges.served(), served});

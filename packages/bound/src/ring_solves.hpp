@@ -12,7 +12,9 @@ class RingSolves
 {
 public:
   /// Inverts the energy of each kind of rings: cells of the same kinds in the same places.
-  RingSolves(const SpaceInput &in, const BoundaryTractions &boundary, const SpaceForms &forms);
+  /// @param exchanges  live longer
+  RingSolves(const SpaceInput &in, const BoundaryTractions &boundary, const SpaceForms &forms,
+             const SpaceExchanges &exchanges);
   /// z <- sum over the rings of what least energy answers to the derivative g with. Collective.
   /// @param g  right on facets that are whole
   void apply(const Tractions &g, const Tractions &z) const;
@@ -23,6 +25,7 @@ private:
   void apply_of_order(const Tractions &g, const Tractions &z) const;
 
   SpaceInput in_;
+  const SpaceExchanges &exchanges_;
   DeviceView<unsigned char *> free_; // (facets) which components are free, and what the facet can hand on
   DeviceView<int *> kind_;           // (rings)
   DeviceView<std::size_t *> first_;  // (kinds) where its inverse begins

@@ -108,18 +108,20 @@ EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::Ste
 
   const BoundaryTractions all = with_contact(in, boundary, contact.tractions);
   const double start = Teuchos::Time::wallTime();
-  const Solved galerkin = galerkin_solution(problem, s, options, in, all);
+  Solved galerkin = galerkin_solution(problem, s, options, in, all);
   bound.solve_seconds = Teuchos::Time::wallTime() - start;
   bound.linear_iterations = galerkin.iterations;
   if (!galerkin.failure.empty()) bound.missing = galerkin.failure;
   if (!bound.missing.empty()) return bound;
 
+  const SpaceExchanges exchanges = space_exchanges(*d.mesh, in.facets);
   const Tractions t =
-      equilibrated(in, all, galerkin.Q, mean_moments(in, *fem::on_overlap(d, *galerkin.u)), d.node_to_cells);
+      equilibrated(in, all, galerkin.Q, mean_moments(in, *fem::on_overlap(d, *galerkin.u)), d.node_to_cells, exchanges);
+  galerkin.Q = {}; // memory
   const DeviceView<double *> of_cell("rpc::bound::of_cell", in.num_owned_cells);
   const RCP<const Vector> on_overlap = fem::on_overlap(d, *u);
   const SpaceForms forms = cell_forms(in, *on_overlap);
-  const RingSolves rings(in, all, forms);
+  const RingSolves rings(in, all, forms, exchanges);
   const DeviceView<float **> scratch("rpc::bound::scratch", in.num_cells(), in.reference.tractions);
   Descent descent(
       [&](const Tractions &x, const bool linear, const Tractions &y) { add_up(in, forms, x, linear, scratch, y); },

@@ -237,8 +237,10 @@ struct SpaceDifference {
     }
     double coefficient[Sizes::coefficients], image[3][6];
     for (double &value : coefficient) value = 0;
-    for (int i = 0; i < Sizes::columns; ++i)
-      for (int k = 0; k < Sizes::coefficients; ++k) coefficient[k] += in.reference.by_column(i, k) * x[i];
+    const double *column = in.reference.by_column.data();
+    for (int i = 0; i < Sizes::columns; i += 2, column += 2 * Sizes::coefficients)
+      for (int k = 0; k < Sizes::coefficients; ++k)
+        coefficient[k] += column[k] * x[i] + column[Sizes::coefficients + k] * x[i + 1];
     image_of_force(in, cell, image);
     for (int s = 0; in.loaded() && s < 4; ++s)
       for (int component = 0; component < 6; ++component)

@@ -38,7 +38,8 @@ DeviceView<double ***> mean_moments(const SpaceInput &in, const Vector &u);
 DeviceView<double ***> known_moments(const SpaceInput &in, const BoundaryTractions &boundary);
 /// Collective.
 Tractions equilibrated(const SpaceInput &in, const BoundaryTractions &boundary, const DeviceView<double ***> &Q,
-                       const DeviceView<double ***> &mean, const fem::NodeToCells &around);
+                       const DeviceView<double ***> &mean, const fem::NodeToCells &around,
+                       const SpaceExchanges &exchanges);
 double largest_distortion(const SpaceInput &in, const mesh::Element &element);
 
 /// Kinds of cells, for `kind` and `example`. Collective. @param comm  of the mesh

@@ -162,7 +162,8 @@ DeviceView<double ***> known_moments(const SpaceInput &in, const BoundaryTractio
 }
 
 Tractions equilibrated(const SpaceInput &in, const BoundaryTractions &boundary, const DeviceView<double ***> &Q,
-                       const DeviceView<double ***> &mean, const fem::NodeToCells &around)
+                       const DeviceView<double ***> &mean, const fem::NodeToCells &around,
+                       const SpaceExchanges &exchanges)
 {
   const LO nodes = static_cast<LO>(around.row.extent(0)) - 1;
   const int functions = static_cast<int>(in.facets.node.extent(1));
@@ -196,19 +197,19 @@ Tractions equilibrated(const SpaceInput &in, const BoundaryTractions &boundary, 
   for (; stars.from < nodes; stars.from += batch)
     Kokkos::parallel_for("rpc::bound::balance_stars", device_range(end_of(stars.from) - stars.from), stars);
   // Moments of functions at other ranks' vertices are fetched, and so are tractions of other ranks' facets.
-  const auto of_vertices = in.facets.of_vertices->served(), of_facets = in.facets.of_facets->served();
+  const auto of_vertices = exchanges.of_vertices.served(), of_facets = exchanges.of_facets.served();
   const DeviceView<double **> served("rpc::bound::served_moments", of_vertices.extent(0), 3);
   Kokkos::parallel_for(
       "rpc::bound::serve_moments", device_range(static_cast<LO>(of_vertices.extent(0))), KOKKOS_LAMBDA(const LO k) {
         for (int i = 0; i < 3; ++i) served(k, i) = stars.moment(of_vertices(k, 0), of_vertices(k, 1), i);
       });
-  const DeviceView<double **> fetched = in.facets.of_vertices->fetched(served);
+  const DeviceView<double **> fetched = exchanges.of_vertices.fetched(served);
   const int per_facet = 3 * functions;
   const Tractions t("rpc::bound::tractions", static_cast<std::size_t>(in.facets.size()) * per_facet);
   const auto from = in.tables.from_moments;
   const auto load = boundary.load;
   const SpaceFacets facets = in.facets;
-  const SlotExchange::Rows row = in.facets.of_vertices->rows(), row_of_facet = in.facets.of_facets->rows();
+  const SlotExchange::Rows row = exchanges.of_vertices.rows(), row_of_facet = exchanges.of_facets.rows();
   Kokkos::parallel_for(
       "rpc::bound::tractions_from_moments", device_range(in.facets.size()), KOKKOS_LAMBDA(const LO f) {
         if (!facets.counts(f)) return;
@@ -231,7 +232,7 @@ Tractions equilibrated(const SpaceInput &in, const BoundaryTractions &boundary, 
         for (int q = 0; q < per_facet; ++q)
           served_tractions(k, q) = t(static_cast<std::size_t>(of_facets(k, 0)) * per_facet + q);
       });
-  const DeviceView<double **> taken = in.facets.of_facets->fetched(served_tractions);
+  const DeviceView<double **> taken = exchanges.of_facets.fetched(served_tractions);
   Kokkos::parallel_for(
       "rpc::bound::take_tractions_in_space", device_range(in.facets.size()), KOKKOS_LAMBDA(const LO f) {
         const LO there = row_of_facet(f, 0);

@@ -136,7 +136,8 @@ std::vector<GO> ids_of(const fem::Discretization &d)
 /// @param entity  (facets) number in the topology
 /// @param id  (local nodes)   @param nodes  (cells, nodes)   @param facet  (cells, 4)
 void order_cells(const mesh::Topology &t, const std::vector<int> &entity, const std::vector<GO> &id,
-                 const HostView<LO **> &nodes, const HostView<LO **> &facet, SpaceFacets &f)
+                 const HostView<LO **> &nodes, const HostView<LO **> &facet, const SlotExchange &of_facets,
+                 SpaceFacets &f)
 {
   const LO count = t.facets.size();
   const auto opposite = [&](const LO e, const int k) { // which vertex of its k-th cell lies opposite
@@ -146,8 +147,8 @@ void order_cells(const mesh::Topology &t, const std::vector<int> &entity, const 
     return s;
   };
   // What the rank of the facet sees opposite of it on both sides; -1: nothing.
-  const auto rows = f.of_facets->rows().of;
-  const auto served = to_host(f.of_facets->served());
+  const auto rows = of_facets.rows().of;
+  const auto served = to_host(of_facets.served());
   const DeviceView<double **> seen("rpc::bound::opposite", served.extent(0), 2);
   const auto there = Kokkos::create_mirror_view(seen);
   const auto ids_at = [&](const LO e) {
@@ -159,7 +160,7 @@ void order_cells(const mesh::Topology &t, const std::vector<int> &entity, const 
   for (std::size_t k = 0; k < served.extent(0); ++k)
     for (int side = 0; side < 2; ++side) there(k, side) = static_cast<double>(ids_at(served(k, 0))[side]);
   Kokkos::deep_copy(seen, there);
-  const auto fetched = to_host(f.of_facets->fetched(seen));
+  const auto fetched = to_host(of_facets.fetched(seen));
   const auto row = to_host(rows);
   const auto cell = mirror(f.cell);
   const auto ordinal = mirror(f.ordinal);
@@ -237,10 +238,7 @@ SpaceFacets space_facets_of(const fem::Discretization &d)
         node(facet, 3 + m) = nodes(c, middle_of(element, own[m == 1 ? 1 : 0], own[m == 0 ? 1 : 2]));
     }
   }
-  f.of_facets = std::make_shared<const SlotExchange>(mesh, node, std::vector<int>{0});
-  f.of_vertices = std::make_shared<const SlotExchange>(mesh, node, std::vector<int>{0, 1, 2});
-  f.of_edges = std::make_shared<const SlotExchange>(mesh, node, std::vector<int>{0, 1, 0});
-  order_cells(t, entity, id, nodes, of_cell, f);
+  order_cells(t, entity, id, nodes, of_cell, SlotExchange(mesh, node, {0}), f);
   const auto [rings, wrong] = rings_of(t, mesh.num_owned_nodes(), id, of_cell, to_host(f.cell), nodes);
   RPC_REQUIRE_CODE(
       max_all(mesh.comm(), wrong ? 1 : 0) == 0, ExitCode::bad_mesh,
@@ -281,6 +279,15 @@ SpaceFacets space_facets_of(const fem::Discretization &d)
   f.toward = view_of<DeviceView<signed char *>>(rings.toward, "rpc::bound::toward");
   f.num_ring_facets = view_of<DeviceView<int *>>(rings.count, "rpc::bound::num_ring_facets");
   return f;
+}
+
+SpaceExchanges space_exchanges(const mesh::Mesh &mesh, const SpaceFacets &facets)
+{
+  const auto from = to_host(facets.node);
+  const HostView<LO **> node("rpc::bound::node", from.extent(0), from.extent(1));
+  for (std::size_t f = 0; f < from.extent(0); ++f)
+    for (std::size_t a = 0; a < from.extent(1); ++a) node(f, a) = from(f, a);
+  return {mesh, node};
 }
 
 } // namespace rpc::bound

@@ -3,8 +3,6 @@
 
 #include "slot_exchange.hpp"
 
-#include <memory>
-
 namespace rpc::bound
 {
 
@@ -24,8 +22,6 @@ struct SpaceFacets {
   DeviceView<signed char *[2]> ordinal; ///< (facets) which facet of these cells
   DeviceView<LO **> node;    ///< (facets, nodes of one) vertices ascending, then the middles of their pairs 01, 12, 02
   DeviceView<char *> counts; ///< (facets) 1 where this rank counts it in sums over all
-  // Of several ranks: numbers of facets, of their vertices, and of their edges.
-  std::shared_ptr<const SlotExchange> of_facets, of_vertices, of_edges;
 
   DeviceView<std::size_t *>
       first; ///< (rings + 1) where the cells of a ring begin; its facets begin `ring` places later
@@ -57,5 +53,17 @@ struct SpaceFacets {
 /// Of a mesh of tetrahedra. Collective.
 /// @throws rpc::Error (bad_mesh) where the cells at an edge are no fan: parts of the body that meet in an edge
 SpaceFacets space_facets_of(const fem::Discretization &d);
+
+/// Numbers of facets, of their vertices 0, 1, 2 and of their edges 01, 12, 02, between ranks.
+struct SpaceExchanges {
+  SlotExchange of_facets, of_vertices, of_edges;
+
+  /// Collective. @param node  (facets, nodes of one) SpaceFacets::node
+  SpaceExchanges(const mesh::Mesh &mesh, const HostView<LO **> &node)
+      : of_facets(mesh, node, {0}), of_vertices(mesh, node, {0, 1, 2}), of_edges(mesh, node, {0, 1, 0})
+  {
+  }
+};
+SpaceExchanges space_exchanges(const mesh::Mesh &mesh, const SpaceFacets &facets);
 
 } // namespace rpc::bound

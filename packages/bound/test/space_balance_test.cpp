@@ -120,7 +120,8 @@ TEST_P(Body, RingsAnswerWithTractionsInBalanceThatLeaveWhatIsKnown)
 {
   const Vector u(d.owned_dofs);
   const SpaceForms forms = cell_forms(in, u);
-  const RingSolves rings(in, boundary, forms);
+  const SpaceExchanges exchanges = space_exchanges(*d.mesh, in.facets);
+  const RingSolves rings(in, boundary, forms, exchanges);
   const Tractions g = drawn(), z("z", g.extent(0));
   rings.apply(g, z);
   double size = 0, along = 0;
@@ -159,7 +160,8 @@ TEST_P(Body, RingsAreSymmetricAndAnswerWithTheInverseOfTheirEnergies)
 {
   const Vector u(d.owned_dofs);
   const SpaceForms forms = cell_forms(in, u);
-  const RingSolves rings(in, boundary, forms);
+  const SpaceExchanges exchanges = space_exchanges(*d.mesh, in.facets);
+  const RingSolves rings(in, boundary, forms, exchanges);
   const DeviceView<float **> scratch("scratch", in.num_cells(), in.reference.tractions);
   const Tractions g = drawn(), h = drawn(), z("z", g.extent(0)), y("y", g.extent(0)), Az("Az", g.extent(0));
   rings.apply(g, z);
@@ -200,7 +202,7 @@ TEST_P(Body, EquilibratedTractionsHaveTheMomentsThatCellsAskFor)
   each_moment([&](const LO c, const int s, const int a, const int n) {
     for (int i = 0; i < 3; ++i) Q(c, n, i) += in.facets.sign(c, s) * moment(hidden, in.facets.of_cell(c, s), a, i);
   });
-  const Tractions t = equilibrated(in, boundary, Q, mean, d.node_to_cells);
+  const Tractions t = equilibrated(in, boundary, Q, mean, d.node_to_cells, space_exchanges(*d.mesh, in.facets));
   each_moment([&](const LO c, const int s, const int a, const int n) {
     for (int i = 0; i < 3; ++i) Q(c, n, i) -= in.facets.sign(c, s) * moment(t, in.facets.of_cell(c, s), a, i);
   });
@@ -229,7 +231,8 @@ TEST_P(Body, TheEnergyOfTractionsIsThatOfTheirStress)
   in.force[0] = 0.3;
   in.force[2] = -0.7;
   const SpaceForms forms = cell_forms(in, u);
-  const RingSolves rings(in, boundary, forms);
+  const SpaceExchanges exchanges = space_exchanges(*d.mesh, in.facets);
+  const RingSolves rings(in, boundary, forms, exchanges);
   const DeviceView<float **> scratch("scratch", in.num_cells(), in.reference.tractions);
   const DeviceView<double *> of_cell("of_cell", in.num_cells());
   const Tractions g = drawn(), z("z", g.extent(0)), at("at", g.extent(0)), slope("slope", g.extent(0));
