@@ -222,7 +222,7 @@ meshio.write(sys.argv[2], out)
         text = stl_of_box(1, 1, 1)
         (self.folder / "open.stl").write_text(text[:text.index("facet")] + text[text.index("endfacet") + 9:])
         (self.folder / "cube.yaml").write_text(CUBE.format(file="open.stl", head='Plane: "z = 1"', more=""))
-        self.expect_refusal(self.rpc("--input=cube.yaml", code=None), 3, ["open.stl", "there is an open edge"])
+        self.expect_refusal(self.rpc("--input=cube.yaml", code=None), 3, ["open.stl", "there is an open edge at ("])
 
 
 if __name__ == "__main__":

@@ -5,10 +5,13 @@
 #include "mesh_formats.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <gmsh.h>
 #include <map>
+#include <optional>
+#include <sstream>
 #include <sys/resource.h>
 #include <utility>
 #include <vector>
@@ -64,14 +67,50 @@ void join_parts()
   gmsh::model::occ::synchronize();
 }
 
+/// The middle of an edge that one triangle alone has; none if the triangles are closed.
+std::optional<std::array<double, 3>> open_edge()
+{
+  constexpr int triangle = 2; // gmsh's number
+  std::vector<std::size_t> tags, nodes;
+  gmsh::model::mesh::getElementsByType(triangle, tags, nodes);
+  std::vector<std::pair<std::size_t, std::size_t>> edges;
+  for (std::size_t k = 0; k + 2 < nodes.size(); k += 3)
+    for (int a = 0; a < 3; ++a) {
+      const auto [low, high] = std::minmax(nodes[k + a], nodes[k + (a + 1) % 3]);
+      if (low != high) edges.emplace_back(low, high);
+    }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t k = 0, last = 0; k < edges.size(); k = last) {
+    for (last = k; last < edges.size() && edges[last] == edges[k];) ++last;
+    if (last - k > 1) continue;
+    std::vector<double> coords, unused;
+    gmsh::model::mesh::getNodes(tags, coords, unused);
+    std::array<double, 3> middle{};
+    for (std::size_t n = 0; n < tags.size(); ++n)
+      for (int d = 0; d < 3 && (tags[n] == edges[k].first || tags[n] == edges[k].second); ++d)
+        middle[d] += coords[3 * n + d] / 2;
+    return middle;
+  }
+  return std::nullopt;
+}
+
 /// Makes a body of the triangles of an STL.
 /// @return why there is none; "" if there is
 std::string fill_surface()
 {
+  constexpr const char *remedy =
+      ". An STL must be the closed surface of a body in space; repair it in the program that "
+      "made it, or give a STEP file or a mesh with cells";
   constexpr double pi = 3.14159265358979323846;
   constexpr double edge_angle =
       40 * pi / 180; // [rad] between triangles, at edges of the body: that of gmsh's own example for STL files
   gmsh::model::mesh::removeDuplicateNodes();
+  if (const auto at = open_edge()) { // gmsh divides some open surfaces for ever
+    std::ostringstream text;
+    text << "its triangles do not bound a body: there is an open edge at (" << (*at)[0] << ", " << (*at)[1] << ", "
+         << (*at)[2] << ")" << remedy;
+    return text.str();
+  }
   gmsh::model::mesh::classifySurfaces(edge_angle, true, true, pi);
   gmsh::vectorpair surfaces, curves;
   gmsh::model::getEntities(surfaces, 2);
@@ -83,9 +122,7 @@ std::string fill_surface()
   std::sort(curves.begin(), curves.end());
   for (const auto &curve : curves)
     if (std::count(curves.begin(), curves.end(), curve) != 2)
-      return "its triangles do not bound a body: there is an open edge. An STL must be the closed surface of a body in "
-             "space; repair it in "
-             "the program that made it, or give a STEP file or a mesh with cells";
+      return std::string("its triangles do not bound a body: there is an edge of more than two faces") + remedy;
   gmsh::model::mesh::createGeometry();
   std::vector<int> tags;
   for (const auto &[dim, tag] : surfaces) tags.push_back(tag);
