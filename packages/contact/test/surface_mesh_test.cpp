@@ -236,6 +236,26 @@ TEST(SurfaceMesh, HasADirectionOnTheEdgeOfAFinWithoutThickness)
   EXPECT_NEAR(direction_into(read(text_stl(t)), {0.5, 0, 3}).value()[1], 1, 1e-14);
 }
 
+TEST(SurfaceMesh, MayHaveAPartThatPointsInwardsAsACavityOnly)
+{
+  const auto with = [](Triangles t, const double size, const double x, const bool turned) {
+    const Triangles more = box();
+    for (const Point &each : more.points) t.points.push_back({x + size * each[0], size * each[1], size * each[2]});
+    for (auto each : more.corners) {
+      for (int &k : each) k += static_cast<int>(t.points.size() - more.points.size());
+      if (turned) std::swap(each[0], each[1]);
+      t.corners.push_back(each);
+    }
+    return t;
+  };
+  EXPECT_EQ(contact::fault_of(with(box(), 2, 9, false)), "");
+  EXPECT_EQ(contact::fault_of(with(box(), 0.5, 0.1, true)), "");
+  EXPECT_EQ(contact::fault_of(with(with(box(), 0.5, 0.1, true), 0.2, 0.1, false)), "");
+  for (const double size : {0.5, 2.}) // as a whole they have a volume, or none
+    EXPECT_EQ(contact::fault_of(with(box(), size, 9, true)).rfind("the 12 facets of the part at (", 0), 0);
+  EXPECT_NE(contact::fault_of(with(with(box(), 0.5, 0.1, true), 0.2, 0.1, true)), ""); // within the cavity
+}
+
 TEST(SurfaceMesh, RefusesWhatIsNoSurfaceOfABody)
 {
   const auto refuse = [](const std::string &bytes, const std::initializer_list<std::string> &words) {

@@ -42,12 +42,74 @@ std::string shown_place(const Point &x)
 /// Directed edges, and the triangle of each.
 using Edges = std::map<std::pair<int, int>, std::size_t>;
 
+/// Triangles that are joined over edges.
+struct Part {
+  std::vector<std::size_t> triangles;
+  Bounds bounds = Bounds::empty();
+  double six_volumes = 0; ///< < 0 where they look inwards
+  double sizes = 0;       ///< of its terms
+};
+
+std::vector<Part> parts_of(const Triangles &t, const Edges &edges)
+{
+  std::vector<Part> parts;
+  std::vector<char> seen(t.corners.size(), 0);
+  for (std::size_t first = 0; first < t.corners.size(); ++first) {
+    if (seen[first] != 0) continue;
+    seen[first] = 1;
+    Part part;
+    part.triangles = {first};
+    for (std::size_t n = 0; n < part.triangles.size(); ++n) {
+      const auto &each = t.corners[part.triangles[n]];
+      const double here = 2 * inner(area_vector(t, part.triangles[n]), t.points[each[0]]);
+      part.six_volumes += here;
+      part.sizes += std::abs(here);
+      for (int k = 0; k < 3; ++k) {
+        part.bounds.add(t.points[each[k]]);
+        const std::size_t other = edges.at({each[(k + 1) % 3], each[k]});
+        if (std::exchange(seen[other], 1) == 0) part.triangles.push_back(other);
+      }
+    }
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+/// How often a part surrounds x, off its surface: 1 within, 0 outside; less that where it looks inwards.
+double times_around(const Triangles &t, const Part &part, const Point &x)
+{
+  double angle =
+      0; // solid, of the triangles seen from x: A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125
+  for (const std::size_t n : part.triangles) {
+    Point a[3];
+    for (int k = 0; k < 3; ++k) a[k] = difference(t.points[t.corners[n][k]], x);
+    const double l[3] = {length(a[0]), length(a[1]), length(a[2])};
+    angle += 2 * std::atan2(inner(a[0], cross(a[1], a[2])), l[0] * l[1] * l[2] + inner(a[0], a[1]) * l[2] +
+                                                                inner(a[1], a[2]) * l[0] + inner(a[2], a[0]) * l[1]);
+  }
+  return angle / (4 * 3.14159265358979323846);
+}
+
+/// The first part that looks inwards and is no cavity of another one; none: null.
+const Part *part_inside_out(const Triangles &t, const std::vector<Part> &parts)
+{
+  for (const Part &part : parts) {
+    if (!(part.six_volumes < -Rounding::place * part.sizes)) continue; // a fin without thickness has none
+    const Point &x = t.points[t.corners[part.triangles.front()][0]];
+    double around = 0;
+    for (const Part &other : parts)
+      if (&other != &part && !(other.bounds.nearest(x) > 0)) around += times_around(t, other, x);
+    if (around < 0.5) return &part;
+  }
+  return nullptr;
+}
+
 } // namespace
 
 std::string fault_of(const Triangles &t)
 {
   constexpr const char *mend = "; mend it in the program that made it, or in a program for meshes such as MeshLab";
-  double six_volumes = 0, longest = 0;
+  double longest = 0;
   for (const auto &each : t.corners)
     for (int k = 0; k < 3; ++k)
       longest = std::max(longest, length(difference(t.points[each[(k + 1) % 3]], t.points[each[k]])));
@@ -60,7 +122,6 @@ std::string fault_of(const Triangles &t)
       edge = std::max(edge, length(difference(t.points[each[(k + 1) % 3]], t.points[each[k]])));
     if (!(length(area) > Rounding::place * edge * edge))
       return "facet " + std::to_string(n + 1) + " at " + shown_place(a) + " has no area" + mend;
-    six_volumes += 2 * inner(area, a);
     for (int k = 0; k < 3; ++k) {
       const std::pair<int, int> here{each[k], each[(k + 1) % 3]};
       const auto [other, is_new] = edges.emplace(here, n);
@@ -76,6 +137,14 @@ std::string fault_of(const Triangles &t)
              shown_place(t.points[edge.first]) + " to " + shown_place(t.points[edge.second]) +
              "; the surface must be closed, also below the side" + mend;
   if (t.corners.empty()) return "there are no facets; name a file that has some";
+  const std::vector<Part> parts = parts_of(t, edges);
+  const double six_volumes = std::accumulate(parts.begin(), parts.end(), 0.,
+                                             [](const double sum, const Part &part) { return sum + part.six_volumes; });
+  const Part *const wrong = parts.size() > 1 ? part_inside_out(t, parts) : nullptr;
+  if (wrong)
+    return "the " + std::to_string(wrong->triangles.size()) + " facets of the part at " +
+           shown_place(t.points[t.corners[wrong->triangles.front()][0]]) +
+           " point inwards, and it is no cavity of another one; turn them round" + mend;
   if (!(six_volumes > 0)) return "its facets all point inwards; turn them round";
   return "";
 }
