@@ -142,6 +142,9 @@ class Periodic(RpcTestCase):
             with self.subTest(centre=centre):
                 found = self.solve(RIGID, "--set=Rigid->top->Rotation Z=0", f"--set=Contact->Obstacle->Centre={{{centre},-1.0}}")
                 self.assertAlmostEqual(found["contact_force"][1], 0.005, delta=1e-9)
+                self.assertAlmostEqual(found["rigid"]["top"]["point"][0], 0.5, delta=1e-14)  # the middle of the joined side
+                if centre == 0.5:
+                    self.assertAlmostEqual(found["rigid"]["top"]["moment"], 0, delta=1e-12)
                 self.assertEqual(sum(told in note for note in found["notes"]), is_told)
 
     @unittest.skipUnless(netCDF4, "python3 has no netCDF4")

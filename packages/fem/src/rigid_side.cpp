@@ -57,6 +57,21 @@ std::vector<double> solved(const Factored &f, std::vector<double> b)
   return b;
 }
 
+/// (nodes, dim) Where forces at nodes act: those on the lower side of a periodic box have a part of their area at their images on the upper side.
+HostPoints middles_of_areas(const mesh::Mesh &mesh, const HostPoints &x)
+{
+  const Kokkos::View<double **, Kokkos::HostSpace> middle("rpc::fem::middles_of_areas", x.extent(0), x.extent(1));
+  for (std::size_t c = 0; c < x.extent(1); ++c) {
+    const int direction = static_cast<int>(c);
+    const double last = mesh.box ? mesh.box->last_in(direction) : 1;
+    for (std::size_t i = 0; i < x.extent(0); ++i) {
+      const bool has_image = mesh.box && x(i, c) == mesh.box->lower[c];
+      middle(i, c) = x(i, c) + (has_image ? mesh.box->period(direction) * last / (1 + last) : 0);
+    }
+  }
+  return middle;
+}
+
 /// The area's centroid, of a body of revolution that of the whole circumference, on the axis. Collective.
 Point centroid(const Discretization &d, const mesh::Side &side, const std::vector<LO> &nodes, const HostPoints &x)
 {
@@ -158,7 +173,7 @@ std::vector<RigidSide> rigid_sides(const Discretization &d, const std::vector<Di
     const mesh::Side &of_mesh = rigid_side(d, condition);
     const std::vector<LO> nodes = d.mesh->nodes_of(condition.side, condition.path() + "->Side");
     side.node = device_values(nodes, "rpc::fem::rigid_nodes");
-    const HostPoints x = node_positions(*d.mesh, side.node);
+    const HostPoints x = middles_of_areas(*d.mesh, node_positions(*d.mesh, side.node));
     side.point = condition.rigid->point ? *condition.rigid->point : centroid(d, of_mesh, nodes, x);
     std::vector<double> arm;
     const std::size_t n = side.motions.size();
