@@ -147,6 +147,12 @@ CommandLine parse_command_line(const std::vector<char *> &argument_pointers)
   RPC_REQUIRE(!line.prints_schema || line.schema == "json" || line.schema == "relaxng",
               "command line: --print-schema must be one of json, relaxng, got \"" << line.schema
                                                                                   << "\". See rpc --help.");
+  for (const auto &[option, given] : {std::pair<std::string, bool>{"--make-surface", !line.surface.empty()},
+                                      {"--mesh-info", !line.mesh.empty()},
+                                      {"--new", line.writes_template}})
+    RPC_REQUIRE(!given || line.input.empty(), "command line: " << option
+                                                               << " does not go with --input, which would not be "
+                                                               << "read. Leave one of them out.");
   line.restarts = newest || !line.restart.empty();
   RPC_REQUIRE(!newest || line.restart.empty(),
               "command line: --restart stands twice, once with a file and once without. See rpc --help.");

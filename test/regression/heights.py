@@ -72,6 +72,7 @@ class Heights(RpcTestCase):
                              ("Hurst Exponent=2", ["from 0 to 1", "got 2"]), ("Seed=-1", ["\"Seed\" must be >= 0"])):
             self.expect_refusal(self.rpc("--make-surface=other.npy", "--set=RMS Slope=0.1", f"--set={fault}", code=None), 2, parts)
         self.expect_refusal(self.rpc("--make-surface=other.png", "--set=RMS Slope=0.1", code=None), 2, [".npy, .csv and .asc", "heights.npy"])
+        self.expect_refusal(self.rpc("--make-surface=other.npy", "--input=deck.yaml", code=None), 2, ["--make-surface does not go with --input", "Leave one"])
         self.expect_refusal(self.rpc("--make-surface=no/folder.npy", "--set=RMS Slope=0.1", code=None), 2, ["cannot write", "no/folder.npy"])
 
     def test_a_map_of_each_format_is_the_same(self):
