@@ -4,8 +4,9 @@ signal nor as an internal error, one message that names what is wrong, and no ha
 
     mutations.py --rpc=build/rpc [--seed=1] [--count=2000] [--first=0] [--jobs=2] [--keep=DIR] [--decks=ball*,curved_*]
     mutations.py --rpc=build/rpc --seed=1 --only=17 --keep=DIR      mutation 17 alone, its files left in DIR
+    mutations.py --rpc=build/rpc --files=*.msh                      meshes of gmsh alone are damaged; --words lists what was said of them
 
-Mutation K depends on the seed, the decks and K alone. --memory=0 lifts the bound on memory, which AddressSanitizer and CUDA do not bear.
+Mutation K depends on the seed, the decks, the files and K alone. --memory=0 lifts the bound on memory, which AddressSanitizer and CUDA do not bear.
 """
 
 import argparse
@@ -58,12 +59,12 @@ def is_fair(name, data):
 class Mutation:
     """Scene, damaged file, kinds of damage and what has come of it."""
 
-    def __init__(self, seed, number, scenes):
+    def __init__(self, seed, number, scenes, pattern="*"):
         rng = random.Random(f"{seed}/{number}")
         self.number = number
         self.scene = scenes[rng.choice(sorted(scenes))]
         self.files = dict(self.scene.files)
-        self.file = rng.choice(sorted(self.files))
+        self.file = rng.choice(sorted(fnmatch.filter(self.files, pattern)))
         pool = [scene.files[name] for scene in scenes.values() for name in scene.files
                 if pathlib.Path(name).suffix == pathlib.Path(self.file).suffix and name != self.file]
         weights = mutators.kinds_for(self.file)
@@ -168,7 +169,7 @@ def check(folder, code, stdout, stderr):
 
 
 def judge(options, mutation):
-    """(kind, exit code, complaint) of one mutation."""
+    """(mutation, exit code, complaint, stderr) of one mutation."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="rpc_mutation_"))
     try:
         mutation.write(folder)
@@ -180,7 +181,7 @@ def judge(options, mutation):
             shutil.copytree(folder, kept)
             (kept / "stdout.txt").write_bytes(stdout)
             (kept / "stderr.txt").write_bytes(stderr)
-        return mutation, code, complaint
+        return mutation, code, complaint, stderr
     finally:
         shutil.rmtree(folder)
 
@@ -204,6 +205,8 @@ def main():
     parser.add_argument("--first", type=int, default=0, help="number of the first mutation")
     parser.add_argument("--only", type=int, help="one mutation by its number")
     parser.add_argument("--decks", default="*", help="only decks of corpus.py of these names, separated by commas, with * and ?")
+    parser.add_argument("--files", default="*", help="only files of these names are damaged, with * and ?")
+    parser.add_argument("--words", action="store_true", help="lists the different messages, numbers left out")
     parser.add_argument("--jobs", type=int, default=2, help="runs side by side")
     parser.add_argument("--keep", help="folder for the input and output of failures")
     parser.add_argument("--memory", type=float, default=4, help="GiB of address space for a run, 0: no bound")
@@ -212,22 +215,27 @@ def main():
     options.rpc = os.path.abspath(options.rpc)
 
     scenes = {name: scene for name, scene in corpus.scenes(SOURCE).items()
-              if any(fnmatch.fnmatch(name, pattern) for pattern in options.decks.split(","))}
+              if any(fnmatch.fnmatch(name, pattern) for pattern in options.decks.split(",")) and fnmatch.filter(scene.files, options.files)}
     numbers = range(options.first, options.first + options.count) if options.only is None else [options.only]
     failures = 0
     results = []
+    said = collections.Counter()
     with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
-        for result in pool.map(lambda number: judge(options, Mutation(options.seed, number, scenes)), numbers):
+        for result in pool.map(lambda number: judge(options, Mutation(options.seed, number, scenes, options.files)), numbers):
+            *result, stderr = result
             mutation, code, complaint = result
             results.append(result)
+            said[re.sub(r"[-+.\w]*\d[-+.\w]*", "#", stderr.decode(errors="replace").strip())[:300]] += 1
             if options.only is not None:
                 print(f"{mutation.kind} of {mutation.file} for {mutation.scene.deck}: exit code {code}")
             if complaint:
                 failures += 1
                 print(f"{mutation.number}: {mutation.kind} of {mutation.file} for {mutation.scene.deck}: {complaint}\n"
-                      f"    {sys.argv[0]} --rpc={options.rpc} --seed={options.seed} '--decks={options.decks}' --only={mutation.number} --keep=DIR",
+                      f"    {sys.argv[0]} --rpc={options.rpc} --seed={options.seed} '--decks={options.decks}' '--files={options.files}' --only={mutation.number} --keep=DIR",
                       flush=True)
     print_table(results)
+    if options.words:
+        print("\n".join(f"{count:6} {words}" for words, count in sorted(said.items(), key=lambda item: -item[1])))
     return 1 if failures else 0
 
 
