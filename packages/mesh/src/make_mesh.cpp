@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/mesh/make_mesh.hpp"
 
+#include "division.hpp"
 #include "gmsh_contents.hpp"
 #include "mesh_formats.hpp"
 #include "rpc/core/error.hpp"
@@ -208,6 +209,16 @@ std::shared_ptr<const Mesh> halved_in_all_directions(std::shared_ptr<const Mesh>
   return mesh;
 }
 
+/// A mesh of fewer cells than ranks, on as many as it has enough cells for. Collective.
+std::shared_ptr<const Mesh> on_some_ranks(const MeshData &whole, const RCP<const Comm> &comm)
+{
+  Division division;
+  on_root(*comm, ExitCode::internal_error, [&] {
+    division = divide_by(whole, comm->getSize(), ranks_of_cells(whole, ranks_for(whole, comm->getSize())));
+  });
+  return std::make_shared<Mesh>(distribute(whole, comm, division));
+}
+
 /// What gmsh makes or a file has, dealt out.
 std::shared_ptr<const Mesh> dealt(const GmshOptions &options, const RCP<const Comm> &comm)
 {
@@ -215,6 +226,8 @@ std::shared_ptr<const Mesh> dealt(const GmshOptions &options, const RCP<const Co
   on_root(*comm, ExitCode::bad_mesh, [&] { whole = read_gmsh(options); });
   const bool contracts = !can_be_meshed(options) && whole.element.shape == Shape::simplex;
   const bool is_root = comm->getRank() == 0;
+  if (!options.needs_all_ranks && sum_all(*comm, GO(is_root && whole.num_cells() < comm->getSize() ? 1 : 0)) > 0)
+    return on_some_ranks(whole, comm);
   return sum_all(*comm, GO(is_root && contracts ? 1 : 0)) > 0 ? distribute_with_contracted(std::move(whole), comm)
                                                               : distribute_with_parents(std::move(whole), comm);
 }
@@ -305,6 +318,7 @@ std::optional<MeshOptions> coarser(const MeshOptions &options, const double fact
   if (!can_be_meshed(gmsh) || gmsh.refinements > 0 || gmsh.nested) return std::nullopt;
   gmsh.size_factor *= factor;
   gmsh.straight_where_bent = true;
+  gmsh.needs_all_ranks = false;
   return result;
 }
 

@@ -179,5 +179,20 @@ TEST(GmshRefinement, HasNoCoarserMeshByGmsh)
   EXPECT_FALSE(mesh::coarser(options, 2));
 }
 
+TEST(CoarserGeometry, IsOnSomeRanksWhereItHasFewerCells)
+{
+  const test::ScratchFile file(
+      "body.geo", "Point(1) = {0, 0, 0, 1}; l[] = Extrude {1, 0, 0} { Point{1}; Layers{1}; };\n"
+                  "s[] = Extrude {0, 1, 0} { Curve{l[1]}; Layers{1}; }; Physical Surface(\"body\") = {s[1]};\n");
+  const GmshOptions options{file.path(), 1, 1};
+  const Mesh mesh =
+      mesh::make_mesh(mesh::coarser(options, 2).value(), world()); // two triangles, whatever the sizes are
+  EXPECT_EQ(sum_all(*world(), GO(mesh.num_owned_cells)), 2);
+  EXPECT_EQ(mesh.owned_nodes->getGlobalNumElements(), 4U);
+  if (world()->getSize() > 2)
+    test::expect_error(ExitCode::bad_mesh, {"2 cells cannot be divided among"},
+                       [&] { mesh::make_mesh(options, world()); });
+}
+
 } // namespace
 } // namespace gmsh_refinement_test

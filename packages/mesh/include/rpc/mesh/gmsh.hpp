@@ -50,6 +50,8 @@ struct GmshOptions {
   std::shared_ptr<GmshContents> contents = nullptr;
   std::string length_unit = {}; ///< of a deck that names it; empty: a note tells what a file of shapes is taken for
 
+  bool needs_all_ranks = true; ///< else a mesh of fewer cells than ranks is on some of them; of no nested mesh
+
   bool needs_geometry() const { return refinements > 0 || nested; } ///< for new nodes on curved boundaries
 };
 

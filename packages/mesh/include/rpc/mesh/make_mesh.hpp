@@ -30,7 +30,7 @@ int dimension(const MeshOptions &options, const Comm &comm);
 /// direction, at least one; a .geo, or a field of sizes, has that many times the size factor. A .msh cannot be coarsened: none. Nor
 /// is a mesh with refinements, whose coarser meshes are its parents.
 ///
-/// It may have too few cells for the ranks, which make_mesh() tells.
+/// A box may have too few cells for the ranks, which make_mesh() tells; a .geo's mesh is then on some of them.
 /// @throws rpc::Error (bad_input) unless factor >= 1 and finite
 std::optional<MeshOptions> coarser(const MeshOptions &options, double factor);
 
