@@ -11,6 +11,7 @@
 #include <cmath>
 #include <iomanip>
 #include <sstream>
+#include <utility>
 
 namespace rpc
 {
@@ -109,10 +110,25 @@ std::string jump_note(const analysis::Solution &s)
   return note.str();
 }
 
-bool touches(const analysis::Solution &s)
+/// Contact that the mesh did not see in steps before a restart, whose notes are those of the run before.
+std::string contact_missed_before(const Scene &scene, const analysis::Solution &s)
 {
-  return s.contact.total.contact_length > 0 ||
-         std::any_of(s.history.begin(), s.history.end(),
+  const auto first = std::find_if(s.history.begin(), s.history.end(), [](const analysis::StepRecord &step) {
+    return step.converged && contact::misses_contact(step.contact, 2 * step.energies.strain);
+  });
+  if (first == s.history.end()) return "";
+  std::ostringstream note;
+  note << analysis::at_time(first->time) << "unseen contact: a contact side lay " << std::setprecision(2)
+       << first->contact.unseen_penetration << " [" << scene.model.units.of(unit::length, false)
+       << "] inside the foundation, between contact points that were open, so that the contact force lacked it; the run "
+          "before the restart says where";
+  return note.str();
+}
+
+/// At the end of a step, one before a restart too.
+bool touched_before(const analysis::Solution &s)
+{
+  return std::any_of(s.history.begin(), s.history.end(),
                      [](const analysis::StepRecord &step) { return step.contact.contact_length > 0; });
 }
 
@@ -200,16 +216,28 @@ void SeldomMeant::note_held_loads(const analysis::Problem &problem, const analys
   }
 }
 
+/// Counts where the body touches and how near it comes; the note on contact that the mesh does not see, or nothing. Collective.
+std::string SeldomMeant::look(const fem::Discretization &d, const analysis::StepSolution &s)
+{
+  touches_ |= s.contact.total.contact_length > 0;
+  smallest_gap_ = std::min(smallest_gap_, contact::smallest_gap(d.mesh->comm(), s.step.contact, s.contact));
+  const std::string unseen = contact::unseen_contact_note(
+      s.contact, scene_.model.contact, d.dim(), s.energy_norm_squared, scene_.model.units, scene_.adapt.adapts());
+  return unseen.empty() || !scene_.has_steps() ? unseen : analysis::at_time(s.step.time) + unseen;
+}
+
+void SeldomMeant::after_part(const fem::Discretization &d, const analysis::StepSolution &s)
+{
+  const std::string unseen = look(d, s);
+  if (unseen_in_parts_.empty()) unseen_in_parts_ = unseen;
+}
+
 void SeldomMeant::after(const analysis::Solution &s)
 {
-  smallest_gap_ =
-      std::min(smallest_gap_, contact::smallest_gap(s.discretization.mesh->comm(), s.step.contact, s.contact));
-  const std::string unseen =
-      contact::unseen_contact_note(s.contact, scene_.model.contact, s.discretization.dim(), s.energy_norm_squared,
-                                   scene_.model.units, scene_.adapt.adapts());
-  if (!unseen.empty() && !has_unseen_contact_)
-    notes_.add((scene_.has_steps() ? analysis::at_time(s.time) : "") + unseen);
-  has_unseen_contact_ |= !unseen.empty();
+  const std::string at_end = look(s.discretization, s), in_parts = std::exchange(unseen_in_parts_, "");
+  const std::string &first = in_parts.empty() ? at_end : in_parts;
+  if (!first.empty() && !has_unseen_contact_) notes_.add(first);
+  has_unseen_contact_ |= !first.empty();
   note_uneven_gap(s);
 }
 
@@ -226,6 +254,8 @@ void SeldomMeant::note_uneven_gap(const analysis::Solution &s)
 
 void SeldomMeant::at_end(const analysis::Solution &s)
 {
+  if (!unseen_in_parts_.empty() && !has_unseen_contact_) notes_.add(unseen_in_parts_); // a later part has failed
+  if (!has_unseen_contact_) notes_.add(contact_missed_before(scene_, s));
   if (!s.uzawa.converged || s.failure) return;
   if (has_unseen_contact_) return; // something would happen, or touch
   if (!loaded_)
@@ -233,7 +263,7 @@ void SeldomMeant::at_end(const analysis::Solution &s)
         scene_.has_steps()
             ? "no step has a load, a prescribed displacement but 0 or a contact point in a foundation: nothing happens"
             : "no load, no prescribed displacement but 0 and no contact point in a foundation: nothing happens");
-  if (!loaded_ || s.step.contact.num_total == 0 || touches(s)) return;
+  if (!loaded_ || s.step.contact.num_total == 0 || touches_ || touched_before(s)) return;
   std::ostringstream note;
   note << (smallest_gap_ > 0 ? "no point touches" : "no point is pressed on the foundation")
        << (scene_.has_steps() ? " at any step" : "") << ": the smallest gap that is left is " << smallest_gap_ << " ["

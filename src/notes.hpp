@@ -43,6 +43,10 @@ public:
 
   /// A step is about to be solved. Collective.
   void before(const analysis::Problem &problem, const analysis::Step &step);
+  /// What parts of the step have shown on another mesh does not count.
+  void on_new_mesh() { unseen_in_parts_.clear(); }
+  /// A part of a step is solved that another one follows. Collective.
+  void after_part(const fem::Discretization &d, const analysis::StepSolution &s);
   /// One of several steps, or the only one, is solved. Collective.
   void after(const analysis::Solution &s);
   /// @param s  the result of the run
@@ -51,13 +55,16 @@ public:
 private:
   void note_overlaps(const analysis::Problem &problem, const analysis::Step &step);
   void note_held_loads(const analysis::Problem &problem, const analysis::Step &step);
+  std::string look(const fem::Discretization &d, const analysis::StepSolution &s);
   void note_uneven_gap(const analysis::Solution &s);
 
   const Scene &scene_;
   Notes &notes_;
   bool loaded_;                                                   // at any step
   std::vector<char> overlaps_;                                    // sides whose foundations have been said to
-  bool has_unseen_contact_ = false;                               // at any step
+  bool touches_ = false;                                          // at any step, or part of one
+  std::string unseen_in_parts_;                                   // of the present step: the first note
+  bool has_unseen_contact_ = false;                               // at any step, or part of one
   bool has_uneven_gap_ = false;                                   // at any step
   double smallest_gap_ = std::numeric_limits<double>::infinity(); // of all steps [m]
 };

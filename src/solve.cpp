@@ -66,6 +66,7 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
   for (const std::string &note : scene.notes) notes.add(note);
   adapt::Listener listener;
   listener.mesh = [&](const fem::Discretization &d, const contact::ContactNodes &contact) {
+    seldom_meant.on_new_mesh();
     if (!table || !scene.has_steps()) table.emplace(console, scene.output.verbose);
     if (!std::exchange(points_looked_for, true)) require_inside(scene.output.points, d, scene.model.units);
     table->scene(scene, d, contact);
@@ -85,6 +86,9 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     seldom_meant.before(problem, step);
     if (ready) ready(problem, step, notes);
     table->heads(scene);
+  };
+  listener.step.part = [&](const analysis::Problem &problem, const analysis::StepSolution &part) {
+    seldom_meant.after_part(problem.discretization(), part);
   };
   const bool several_steps = scene.has_steps(); // a line for each is enough then
   if (!several_steps)

@@ -56,6 +56,25 @@ class Seldom(RpcTestCase):
         self.assertIn("no point touches at any step: the smallest gap that is left is 0.08 [m]", self.notes(down_and_up.replace("GAP", "0.1")))
         self.assertNotIn("no point touches", str(self.notes(down_and_up.replace("GAP", "0.015"))))  # the second step does
 
+    def test_contact_that_the_mesh_misses_in_a_part_of_a_step_or_before_a_restart(self):
+        """Half-way through its one step a narrow bump reaches into the body, which touches beside it before and after."""
+        deck = """
+  Mesh: {Lower: [0.0, 0.0], Upper: [1.0, 1.0], Cells: [4, 4], Element: P2}
+  Material: {Young's Modulus: 1000.0, Poisson's Ratio: 0.3}
+  Dirichlet: {top: {X: 0.0, Y: "-0.02*t"}}
+  Contact: {Side: bottom, Normal: "0, -1", Gap: "(x > 0.7 ? 0.004 : 0.05) - 0.07*max(0, 1 - 4*abs(t - 0.5))*exp(-((x - 0.3125)/0.02)^2)"}
+  Output: {Exodus: false, CSV: false}
+"""
+        missed = "at t = 0.5: unseen contact: "
+        self.assertIn(missed + "at (0.3125, 0)", str(self.notes(deck + "  Steps: {Times: [1.0], Energy Tolerance: 0.1}\n")))
+        self.assertNotIn("unseen contact", str(self.notes(deck + "  Steps: {Times: [0.25, 1.0]}\n")))  # nobody has looked
+        steps = deck + "  Steps: {Times: [0.5, 0.9], Checkpoint Every: 1}\n"
+        self.assertIn(missed + "at (0.3125, 0)", str(self.notes(steps)))
+        (self.folder / "deck.yaml").write_text("deck:" + steps.replace("0.9]", "0.9, 1.0]"))
+        again = self.rpc("--input=deck.yaml", "--output=out", "--restart").stdout
+        self.assertIn(missed + "a contact side lay 0.03 [m] inside the foundation", again)
+        self.assertIn("the run before the restart says where", again)
+
     def test_nothing_loads_the_body(self):
         for gap in ("0.1", "0.0"):
             notes = self.notes(HELD + f"  Contact: {{Side: bottom, Gap: {gap}}}\n  Traction: {{right: {{X: 0.0}}}}\n")

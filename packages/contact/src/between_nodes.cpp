@@ -409,12 +409,16 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
   }
 }
 
+bool misses_contact(const ContactSums &sums, const double energy_norm_squared)
+{
+  return 2 * sums.unseen_energy > notable * notable * energy_norm_squared;
+}
+
 std::string unseen_contact_note(const ContactResult &result, const std::vector<ContactOptions> &options, const int dim,
                                 const double energy_norm_squared, const UnitNames &units, const bool adapts)
 {
   const PlaceBetweenNodes &at = result.between.unseen;
-  const double squared = 2 * result.total.unseen_energy;
-  if (!(at.depth > 0) || !(squared > notable * notable * energy_norm_squared)) return "";
+  if (!(at.depth > 0) || !misses_contact(result.total, energy_norm_squared)) return "";
   std::ostringstream text;
   const std::string unit = " [" + units.of(unit::length, false) + "]";
   text << std::setprecision(4) << "unseen contact: at (" << at.place[0] << ", " << at.place[1];

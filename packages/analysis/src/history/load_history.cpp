@@ -222,7 +222,10 @@ StepSolution LoadHistory::advance_in_parts(const double t, const Halvings &left,
   std::optional<UzawaResult> undivided;
   if (!s.uzawa.converged && left.failures == max_halvings_) undivided = s.uzawa;
   s = advance_in_parts(half, then, progress, now);
-  if (s.uzawa.converged) s = advance_in_parts(t, then, progress, now);
+  if (s.uzawa.converged) {
+    if (progress.part) progress.part(*problem_, s);
+    s = advance_in_parts(t, then, progress, now);
+  }
   if (undivided && !s.uzawa.converged && !interrupted(problem_->discretization().mesh->comm()))
     tell_what_came_nearer(*undivided, t, s.uzawa);
   return s;

@@ -40,6 +40,8 @@ struct StepOptions {
   bool looks_between_nodes = true; ///< for contact that no node has (3.15): of users' meshes, not of those that predict
 };
 
+struct StepSolution;
+
 /// Reports while a step is solved; empty functions are not called.
 struct Progress {
   /// A step is about to be solved: all that needs no solve has been done. What this throws, on all ranks, ends the run.
@@ -47,6 +49,8 @@ struct Progress {
   /// @param uzawa  number of the Uzawa iteration, from 1
   std::function<void(int uzawa, const solver::NewtonStep &, const contact::StateCounts &)> newton;
   std::function<void(const UzawaResult &)> uzawa;
+  std::function<void(const Problem &, const StepSolution &)>
+      part; ///< a part of a step is solved that another one follows
 };
 
 /// What was done on a coarser mesh.

@@ -29,6 +29,10 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
                         const std::vector<ContactOptions> &options, const ContactNodes &points,
                         const fem::Materials &materials, const Vector &u, ContactResult &result);
 
+/// Whether contact that the mesh does not see matters.                                              doc/theory.md (3.16)
+/// @param energy_norm_squared  a(u, u) of the solution [J], in 2D per m
+bool misses_contact(const ContactSums &sums, double energy_norm_squared);
+
 /// Note for the user on contact that the mesh does not see: place, depth, and the size of cells that would see it; empty if there is none
 /// that matters.
 /// @param energy_norm_squared  a(u, u) of the solution [J], in 2D per m
