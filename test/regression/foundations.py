@@ -18,6 +18,14 @@ SOFT = """soft:
   Dirichlet: {top: {X: 0.0, Y: -0.001, Z: 0.0}}
   Contact: {Side: bottom, Gap: "0.008*((x - 0.54)^2 + (z - 0.7)^2)", Yield Stress: "0.012 + 0.003*x", Hardening: 1.0}
 """
+# On a foundation with a conical gap, which hardens little; with order 2 no contact law holds on the axis.
+CONE = """cone:
+  Kinematics: axisymmetric
+  Mesh: {Lower: [0.0, 0.0], Upper: [1.0, 1.0], Cells: [8, 6], Element: P2}
+  Material: {Young's Modulus: 1000.0, Poisson's Ratio: 0.3}
+  Dirichlet: {top: {X: 0.0, Y: -0.03}}
+  Contact: {Side: bottom, Gap: "0.022*x", Yield Stress: 20.0, Hardening: 35.0}
+"""
 
 
 def rows(path):
@@ -31,6 +39,20 @@ class Foundations(RpcTestCase):
 
     def history_of(self, deck, output="out"):
         return [{k: float(v) for k, v in row.items() if k != "reason"} for row in rows(self.folder / output / f"{deck.stem}.history.csv")]
+
+    def test_a_cone_presses_in_most_on_the_axis(self):
+        deck = self.folder / "cone.yaml"
+        deck.write_text(CONE)
+        deepest = {}
+        for element in ("P2", "Q2", "Q1"):
+            summary = self.summary_of(deck, f"--set=Mesh->Element={element}", output=element)
+            table = sorted(rows(self.folder / element / "cone.contact.csv"), key=lambda row: float(row["x"]))
+            self.assertEqual(float(table[0]["x"]), 0)
+            self.assertAlmostEqual(summary["max_penetration"], float(table[0]["dent"]), delta=1e-6 * summary["max_penetration"])
+            self.assertAlmostEqual(summary["max_dent"], summary["max_penetration"], delta=1e-6 * summary["max_penetration"])
+            self.assertGreater(summary["max_penetration"], 1.02 * float(table[1]["dent"]))
+            deepest[element] = float(table[0]["u_nu"])  # the gap is 0 there
+        self.assertAlmostEqual(deepest["P2"], deepest["Q2"], delta=0.02 * deepest["Q2"])
 
     def test_a_roller_comes_from_beside_the_body_and_leaves_it(self):
         for normal in ["0, 1", "surface", "foundation"] if RANKS == 1 else ["surface"]:

@@ -288,11 +288,13 @@ ContactSums sums_of(const Comm &comm, const ContactNodes &c, const ContactResult
       "rpc::contact::result_maxima", points,
       KOKKOS_LAMBDA(const LO i, double &most, double &deep, double &overlap, double &dented) {
         const bool weightless = !(c.weight(i) > 0); // the contact law does not hold there
-        // In the plane only the axis of revolution has no weight, and pressures are often largest there.
-        if ((!weightless || c.dim == 2) && p(i) > most) most = p(i);
-        if (weightless) return;
+        // In the plane only the axis of revolution has no weight, and pressures and penetrations are often largest there.
+        if (weightless && c.dim > 2) return;
+        if (p(i) > most) most = p(i);
         if (dent(i) > dented) dented = dent(i);
-        if (v(i) > deep) deep = v(i);
+        const double pressed_in = weightless ? lent_penetration(v(i), dent(i), p(i), c.law(i)) : v(i);
+        if (pressed_in > deep) deep = pressed_in;
+        if (weightless) return;
         if (-c.gap(i) > overlap) overlap = -c.gap(i);
       },
       Kokkos::Max<double>(s.max_pressure), Kokkos::Max<double>(s.max_penetration),
@@ -310,6 +312,24 @@ ContactSums sums_of(const Comm &comm, const ContactNodes &c, const ContactResult
   for (const auto &q : contact_quantities) // Kokkos' maximum over no nodes is -DBL_MAX
     if (q.combine == Combine::maximum) s.*q.value = std::max(0., s.*q.value);
   return over_all_ranks(comm, s);
+}
+
+/// The deepest displacement into a foundation that gives way at points on the axis without weight, to which no law holds [m]: by as much as it
+/// differs from what they are lent, either may be off. Collective.                                              (3.5b)
+double deepest_on_axis(const Comm &comm, const ContactNodes &points, const ContactResult &result)
+{
+  if (points.dim > 2) return 0;
+  const ContactNodes c = points;
+  const auto v = result.penetration, p = result.pressure;
+  double deepest = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::deepest_on_axis", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &most) {
+        if (c.weight(i) > 0 || !(p(i) > 0)) return;
+        if (p(i) >= gives_way_from(c.law(i)) && v(i) > most) most = v(i);
+      },
+      Kokkos::Max<double>(deepest));
+  return max_all(comm, std::max(0., deepest)); // a maximum over no points is -DBL_MAX
 }
 
 } // namespace
@@ -357,6 +377,7 @@ ContactResult contact_result(const fem::Discretization &d, const std::vector<con
     if (d.axisymmetric()) result.sides.back().force[0] = 0; // around the axis radial forces cancel
     result.total += result.sides.back();
   }
+  if (c.num_weightless > 0) result.deepest_on_axis = deepest_on_axis(d.mesh->comm(), c, result);
   return result;
 }
 

@@ -307,7 +307,7 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
   estimate.jumped_energy = all[10];
   estimate.misread_force = unseen.misread_force;
   estimate.misread_energy = unseen.misread_energy;
-  estimate.misread_penetration = unseen.misread_penetration;
+  estimate.misread_penetration = std::max(unseen.misread_penetration, of.result.deepest_on_axis); // (3.5b)
   return estimate;
 }
 

@@ -57,7 +57,7 @@ struct ErrorEstimate {
   // What the mesh leaves open where data of the contact law jump between nodes:                                  (10.7b)
   double jumped_force = 0;  ///< tractions that jump, over half of the facets on which they do [N], in 2D per m
   double jumped_energy = 0; ///< what contact that ends half a facet further in would release [J], in 2D per m
-  double misread_force = 0, misread_energy = 0, misread_penetration = 0; ///< see contact::BetweenNodes
+  double misread_force = 0, misread_energy = 0, misread_penetration = 0; ///< see contact::BetweenNodes, (3.5b)
 
   double part(const std::string &key) const; ///< [J], in 2D per m
   double total() const;                      ///< eta^2

@@ -148,6 +148,8 @@ struct ContactResult {
   std::vector<ContactSums> sides; ///< in the order of the contact sides
   ContactSums total;
   BetweenNodes between;
+  double deepest_on_axis =
+      0; ///< displacement into a foundation that gives way, at points without weight on the axis [m]
 };
 
 /// Reads a state's displacement and multipliers, see completed_pressure(); collective.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rpc/contact/law/foundation.hpp"
+#include "rpc/contact/law/states.hpp"
 #include "rpc/core/math.hpp"
 
 namespace rpc::contact
@@ -20,6 +21,14 @@ KOKKOS_INLINE_FUNCTION Lent lent(const double pressure, const double dent, const
 {
   const double made = pressure >= f.yield && dent > 0 ? dent : 0;
   return {math::fmin(pressure, f.yield + f.hardening * made), made};
+}
+
+/// How deep a point without weight is pressed in, as the pressure and the dent that it is lent tell [m].                     (3.5b)
+/// @param v  where its displacement has it [m]
+KOKKOS_INLINE_FUNCTION double lent_penetration(const double v, const double dent, const double p, const Foundation &f)
+{
+  if (p > 0) return dent + resting_penetration(p, f);
+  return math::fmin(v, dent);
 }
 
 } // namespace rpc::contact
