@@ -73,6 +73,13 @@ TIP = """tip:
   Dirichlet: {top: {X: 0.0, Y: -0.01}}
   Contact: {Side: bottom, Gap: "0.05*abs(x - 0.47)"}
   """ + STEEL + "\n"
+# Bends down by 0.028 at its free end.
+SHELF = """shelf:
+  Mesh: {Lower: [0.0, 0.0], Upper: [2.0, 1.0], Cells: [4, 2], Element: P2}
+  Dirichlet: {left: {X: 0.0, Y: 0.0}}
+  Traction: {top: {Y: -1.0}}
+  Contact: {Side: bottom, Gap: 0.1}
+  """ + STEEL + "\n"
 # Sizes for the targets below hardly change its first mesh.
 STEP = """step:
   Mesh: {Lower: [0.0, 0.0], Upper: [8.7, 1.0], Cells: [24, 4], Element: Q2}
@@ -102,6 +109,23 @@ class Promises(RpcTestCase):
             self.assertEqual(errors(result), [], result.stdout)
             self.done[str(job)] = result, json.loads((self.folder / f"out{k}" / f"deck{k}.json").read_text())
         return [self.done[str(job)] for job in jobs]
+
+    def test_nothing_of_contact_is_exactly_zero_where_the_body_may_touch(self):
+        jobs = [(SHELF, [*adapt(0.05, 3000), f"--set=Contact->Gap={gap}", *more])
+                for gap in (0.1, 0.0283) for more in ([], ["--set=Contact->Stiffness=1e5"])]
+        for (_, options), (_, summary) in zip(jobs, self.runs(jobs)):
+            with self.subTest(options=options[4:]):
+                adaptation = summary["adaptation"]
+                bars, unknown = adaptation["errors"], adaptation["errors_unknown"]
+                self.assertEqual([summary[key] for key in ("max_pressure", "contact_length", "max_penetration")], [0, 0, 0])
+                names = ["contact_force", "max_pressure", "contact_length", "max_penetration"]
+                if options[4].endswith("0.1"):
+                    self.assertEqual([bars[name] for name in names], [0, 0, 0, 0])
+                    continue
+                self.assertGreater(bars["contact_force"], 0)
+                self.assertEqual([bars[name] for name in names[1:3]], [None, None])
+                self.assertIn("the smallest gap that is left is within its error", unknown["max_pressure"])
+                self.assertEqual(bars["max_penetration"], None if len(options) > 5 else 0)  # a rigid foundation never gives way
 
     def test_no_mesh_but_the_first_has_more_unknowns_than_allowed(self):
         limits = [(deck, meshes, limit) for deck, meshes, all_limits in [

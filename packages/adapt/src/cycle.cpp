@@ -180,15 +180,57 @@ void share_what_springs_tell(const Cycle &last, ObservedErrors &errors)
   errors.max_pressure = std::max(errors.max_pressure, errors.max_penetration / compliance);
 }
 
-/// A penetration of 0 has no bar where the pressure may reach the yield stress: how deep the foundation gives way there, no mesh has shown.
+/// A penetration of 0 has no bar where the pressure may reach the yield stress, or the body may touch a spring: how deep the foundation gives way
+/// there, no mesh has shown.
 void judge_rigid_foundation(const Cycle &last, ObservedErrors &errors)
 {
   const contact::ContactSums &all = last.contact;
-  if (all.max_dent > 0 || all.foundation_energy > 0 || !std::isfinite(last.peak.lowest_bound)) return;
-  if (all.max_pressure + errors.max_pressure < last.peak.lowest_bound) return; // NaN is not
+  const double gives_way_from = last.peak.lowest_bound;
+  if (all.max_dent > 0 || all.foundation_energy > 0 || !std::isfinite(gives_way_from)) return;
+  const double most = all.max_pressure + errors.max_pressure;
+  if (most == 0 || most < gives_way_from) return; // NaN is not
   errors.max_penetration = std::numeric_limits<double>::quiet_NaN();
   errors.unknown["max_penetration"] =
-      "nothing yields on this mesh, and the largest pressure may reach the yield stress";
+      gives_way_from > 0 ? "nothing yields on this mesh, and the largest pressure may reach the yield stress"
+                         : "no spring is pressed in on this mesh, and the body may touch one";
+}
+
+/// By how far two gaps differ; infinite ones, of sides without contact points, do not.
+double difference_of_gaps(const Cycle &a, const Cycle &b)
+{
+  return a.smallest_gap == b.smallest_gap ? 0 : std::abs(b.smallest_gap - a.smallest_gap);
+}
+
+/// By how much the smallest gap may be off, as the meshes of a step show.                                         (10.7d)
+double error_of_gap(const std::vector<Cycle> &cycles, const std::vector<double> &eta)
+{
+  const Cycle &last = cycles.back();
+  return std::max(shown_error(cycles, eta, difference_of_gaps), last.estimate * last.max_displacement);
+}
+
+/// Where nothing touches, contact force, pressures and the area in contact are 0 where the gap that is left is larger than its error; else no
+/// mesh has shown what pressures there may be.                                                                   (10.7d)
+void judge_open_body(const Cycle &last, const double error_of_gap, ObservedErrors &errors)
+{
+  if (last.contact.contact_length > 0) return;
+  const bool open = last.smallest_gap > error_of_gap;
+  if (open) errors.contact_force = 0;
+  const auto set = [&](double &bar, const char *const key) {
+    bar = open ? 0 : std::numeric_limits<double>::quiet_NaN();
+    open ? void(errors.unknown.erase(key)) : void(errors.unknown[key] = may_touch);
+  };
+  set(errors.max_pressure, "max_pressure");
+  set(errors.contact_pressure, "contact_pressure_l2_relative");
+  set(errors.contact_length, "contact_length");
+  if (open && last.contact.max_dent == 0) set(errors.max_penetration, "max_penetration");
+}
+
+/// What follows from each other.
+void judge_together(const Cycle &last, const double error_of_gap, ObservedErrors &errors)
+{
+  share_what_springs_tell(last, errors);
+  judge_open_body(last, error_of_gap, errors);
+  judge_rigid_foundation(last, errors);
 }
 
 /// What the meshes of earlier steps leave comes to what those of the last one do.                              (10.7c)
@@ -276,10 +318,26 @@ std::string error_bar_name(const std::string &key, const ResultScope &scope)
   return found == error_bars.end() ? key : found->name(scope);
 }
 
-ObservedErrors observed_errors(const std::vector<Cycle> &cycles, const FixedByLoad &fixed, const double tolerance)
+namespace
+{
+
+std::vector<double> estimates_of(const std::vector<Cycle> &cycles)
 {
   std::vector<double> eta;
   for (const auto &cycle : cycles) eta.push_back(cycle.estimate);
+  return eta;
+}
+
+/// Whether the meshes show nothing of the errors.
+bool show_nothing(const std::vector<Cycle> &cycles)
+{
+  return cycles.size() < 2 || cycles.back().misses_contact;
+}
+
+/// The same as observed_errors(), each quantity by itself.
+ObservedErrors errors_on_meshes(const std::vector<Cycle> &cycles, const FixedByLoad &fixed, const double tolerance)
+{
+  const std::vector<double> eta = estimates_of(cycles);
   const auto error = [&](const auto &distance) { return shown_error(cycles, eta, distance); };
   ObservedErrors errors;
   errors.energy = error([](const Cycle &a, const Cycle &b) { return std::abs(b.energy - a.energy); });
@@ -328,8 +386,15 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles, const FixedByLo
     errors.contact_length = std::numeric_limits<double>::quiet_NaN();
     errors.unknown["contact_length"] = "the length in contact does not settle from mesh to mesh";
   }
-  share_what_springs_tell(cycles.back(), errors);
-  judge_rigid_foundation(cycles.back(), errors);
+  return errors;
+}
+
+} // namespace
+
+ObservedErrors observed_errors(const std::vector<Cycle> &cycles, const FixedByLoad &fixed, const double tolerance)
+{
+  ObservedErrors errors = errors_on_meshes(cycles, fixed, tolerance);
+  if (!show_nothing(cycles)) judge_together(cycles.back(), error_of_gap(cycles, estimates_of(cycles)), errors);
   return errors;
 }
 
@@ -344,7 +409,7 @@ ObservedErrors observed_errors(std::vector<Cycle> cycles, const CoarserHistory &
     return errors;
   }
   if (alone) cycles.insert(cycles.begin(), coarser.last);
-  errors = observed_errors(cycles, fixed, tolerance);
+  errors = errors_on_meshes(cycles, fixed, tolerance);
   errors.contact_pressure = std::numeric_limits<double>::quiet_NaN();
   errors.unknown["contact_pressure_l2_relative"] =
       alone ? one_mesh : "what the meshes of earlier steps have left of it is not known";
@@ -352,7 +417,12 @@ ObservedErrors observed_errors(std::vector<Cycle> cycles, const CoarserHistory &
   if (earlier.matter) add_what_earlier_steps_leave(coarser, cycles.back(), earlier, errors);
   take_what_the_load_fixes(on_meshes, fixed, errors);
   if (is_fixed(cycles, fixed)) errors.contact_force = on_meshes.contact_force;
-  share_what_springs_tell(cycles.back(), errors);
+  if (show_nothing(cycles)) return errors;
+  double of_gap = error_of_gap(cycles, estimates_of(cycles));
+  if (earlier.matter)
+    of_gap += error_of_history(difference_of_gaps(cycles.back(), coarser.last), coarser.largest_estimate,
+                               earlier.largest_estimate);
+  judge_together(cycles.back(), of_gap, errors);
   return errors;
 }
 

@@ -23,6 +23,7 @@ Cycle mesh(const double estimate, const double force, const double pressure)
   c.energy_norm_squared = 2;
   c.contact.force = {0, force, 0};
   c.contact.max_pressure = pressure;
+  c.contact.contact_length = 1;
   return c;
 }
 
@@ -200,6 +201,52 @@ TEST(ErrorBars, OfNoPenetrationAreNoneWhereThePressureMayReachTheYieldStress)
   EXPECT_FALSE(std::isnan(observed_errors(cycles).max_penetration));
 }
 
+/// A mesh on which nothing touches. @param left  the smallest gap
+Cycle open_mesh(const double estimate, const double left)
+{
+  Cycle c = mesh(estimate, 0, 0);
+  c.contact.contact_length = 0;
+  c.reactions = {{0, 10, 0}};
+  c.smallest_gap = left;
+  c.max_displacement = 1;
+  return c;
+}
+
+TEST(ErrorBars, OfABodyThatDoesNotTouchAreZeroWhereItsGapIsKnownBetterThanThat)
+{
+  const std::vector<Cycle> open = {open_mesh(0.1, 0.031), open_mesh(0.02, 0.03)};
+  const auto errors = observed_errors(open);
+  EXPECT_EQ(errors.contact_force, 0);
+  EXPECT_EQ(errors.max_pressure, 0);
+  EXPECT_EQ(errors.contact_pressure, 0);
+  EXPECT_EQ(errors.contact_length, 0);
+  EXPECT_EQ(errors.max_penetration, 0);
+  EXPECT_GT(errors.reactions[0], 0);
+  // By the share of the largest displacement that may be an error, or by what the meshes show.
+  for (const auto &cycles : {std::vector<Cycle>{open_mesh(0.1, 0.0195), open_mesh(0.02, 0.0195)},
+                             std::vector<Cycle>{open_mesh(0.1, 0.16), open_mesh(0.02, 0.03)},
+                             std::vector<Cycle>{open_mesh(0.1, 0.031), open_mesh(0.02, -1e-9)}}) {
+    const auto close = observed_errors(cycles);
+    EXPECT_GT(close.contact_force, 0);
+    EXPECT_TRUE(std::isnan(close.max_pressure) && std::isnan(close.contact_pressure) &&
+                std::isnan(close.contact_length));
+    EXPECT_EQ(close.unknown.at("max_pressure"), adapt::may_touch);
+    EXPECT_EQ(close.max_penetration, 0); // the foundation never gives way
+  }
+}
+
+TEST(ErrorBars, OfNoPenetrationAreNoneWhereABodyMayTouchWhatGivesWay)
+{
+  std::vector<Cycle> cycles = {open_mesh(0.1, 0.0195), open_mesh(0.02, 0.0195)};
+  for (const double from : {0., 30.}) { // springs, or a yield stress
+    cycles.back().peak.lowest_bound = from;
+    EXPECT_TRUE(std::isnan(observed_errors(cycles).max_penetration)) << from;
+    cycles.back().smallest_gap = cycles.front().smallest_gap = 0.03;
+    EXPECT_EQ(observed_errors(cycles).max_penetration, 0) << from;
+    cycles.back().smallest_gap = cycles.front().smallest_gap = 0.0195;
+  }
+}
+
 adapt::CoarserHistory coarser_history(const double largest_estimate, const Cycle &last)
 {
   adapt::CoarserHistory coarser;
@@ -232,6 +279,20 @@ TEST(ErrorBarsOfHistories, CountWhatMeshesOfEarlierStepsHaveLeft)
   errors = observed_errors(cycles, coarser_history(0.6, cycles.front()), {true, 0.2, 2, {0.7, 0.3}});
   EXPECT_NEAR(errors.contact_force, own.contact_force + 0.7, 1e-12);
   EXPECT_NEAR(errors.energy, own.energy + 0.3, 1e-12);
+}
+
+TEST(ErrorBarsOfHistories, OfABodyThatDoesNotTouchCountWhatEarlierStepsLeaveOfItsGap)
+{
+  const std::vector<Cycle> cycles = {open_mesh(0.1, 0.03), open_mesh(0.02, 0.03)};
+  const adapt::EarlierSteps earlier{true, 0.2, 2};
+  auto errors = observed_errors(cycles, coarser_history(0.6, open_mesh(0.08, 0.029)), earlier);
+  EXPECT_EQ(errors.contact_force, 0);
+  EXPECT_EQ(errors.max_pressure, 0);
+  EXPECT_EQ(errors.contact_length, 0);
+  errors = observed_errors(cycles, coarser_history(0.6, open_mesh(0.08, 0.06)), earlier); // 0.03 / (0.6 / 0.2 - 1) more
+  EXPECT_GT(errors.contact_force, 0);
+  EXPECT_EQ(errors.unknown.at("max_pressure"), adapt::may_touch);
+  EXPECT_TRUE(std::isnan(errors.contact_length));
 }
 
 TEST(ErrorBarsOfHistories, AreThoseOfTheLastStepWhereNothingIsLeft)

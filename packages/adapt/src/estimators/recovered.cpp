@@ -204,7 +204,7 @@ PressureBounds::value_type pressure_bounds(const Comm &comm, const contact::Cont
   Kokkos::parallel_reduce(
       "rpc::adapt::pressure_bounds", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, PressureBounds::value_type &of) {
-        of.min_val = math::fmin(of.min_val, contact::dented_from(points.law(i)));
+        of.min_val = math::fmin(of.min_val, contact::gives_way_from(points.law(i)));
         of.max_val = math::fmax(of.max_val, contact::largest_bearable(points.law(i)));
       },
       PressureBounds(bounds));

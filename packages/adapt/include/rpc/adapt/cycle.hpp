@@ -7,6 +7,7 @@
 #include "rpc/core/quantity.hpp"
 
 #include <array>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -41,6 +42,9 @@ struct Cycle {
   double contact_ends = 0;                    ///< of facets that are partly open, half of them [m]
   double jumped_force = 0, jumped_energy = 0; ///< see ErrorEstimate [N], [J], in 2D per m
   double misread_force = 0, misread_energy = 0, misread_penetration = 0; ///< the same, and [m]
+  /// That is left [m]; < 0 where a side lies in the foundation between its nodes.
+  double smallest_gap = std::numeric_limits<double>::infinity();
+  double max_displacement = 0; ///< [m]
   bool misses_contact = false; ///< contact that no contact point sees is most of the estimate, (10.4b)
   int newton_iterations = 0;
   std::vector<int> linear_iterations;      ///< per solve
@@ -103,6 +107,9 @@ double energy_left(const Cycle &cycle);
 inline constexpr const char *unseen_by_mesh =
     "the mesh misses contact between its nodes, which is most of the estimated error"; ///< a reason in `unknown`
 inline constexpr const char *one_mesh = "one mesh shows no change";                    ///< a reason in `unknown`
+
+inline constexpr const char *may_touch =
+    "nothing touches on this mesh, and the smallest gap that is left is within its error"; ///< a reason in `unknown`
 
 /// Which forces the load alone fixes.
 struct FixedByLoad {

@@ -15,7 +15,8 @@ namespace rpc::adapt
 /// Whether the largest contact pressure can have an error bar: what the mesh shows of it.              doc/theory.md (10.8)
 struct PressurePeak {
   bool at_bound = false; ///< it is the highest yield stress there is, and so exact
-  double lowest_bound = std::numeric_limits<double>::infinity(); ///< yield stress of a contact point [Pa]
+  /// The pressure from which a contact point gives way: its yield stress, on springs 0 [Pa].
+  double lowest_bound = std::numeric_limits<double>::infinity();
   double drop =
       0; ///< by how much the pressure falls within a facet whose highest is 0.98 of it, over the largest pressure
   bool yield_jump = false; ///< a part that yields borders on a higher yield stress: the pressure is singular in between

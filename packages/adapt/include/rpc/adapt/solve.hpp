@@ -7,6 +7,7 @@
 #include "rpc/analysis/run.hpp"
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -17,8 +18,9 @@ namespace rpc::adapt
 struct Solution : analysis::Solution {
   double pressure_norm = 0;   ///< L2 norm of the contact pressure [Pa m^(1/2)], in 3D [Pa m]; where meshes are adapted
   double pressure_change = 0; ///< the same of its change since the mesh before, if there was one
-  std::optional<ErrorEstimate> estimate;   ///< where it is asked for
-  std::optional<bound::EnergyBound> bound; ///< guaranteed, where it is asked for
+  double smallest_gap = std::numeric_limits<double>::infinity(); ///< see Cycle [m]; where meshes are adapted
+  std::optional<ErrorEstimate> estimate;                         ///< where it is asked for
+  std::optional<bound::EnergyBound> bound;                       ///< guaranteed, where it is asked for
   double largest_estimate =
       0; ///< of load steps so far, of the error in the energy norm [J^(1/2)], in 2D per m; NaN: not known
   LeftOpen earlier_misread;             ///< left_by_misreading(): the most of a load step before this one

@@ -86,9 +86,10 @@ KOKKOS_INLINE_FUNCTION double largest_bearable(const Foundation &f)
   return is_rigid(f.yield) || f.hardening > 0 ? math::infinity<double> : f.yield;
 }
 
-/// The pressure from which the foundation gives way for good [Pa]; inf where it never does.
-KOKKOS_INLINE_FUNCTION double dented_from(const Foundation &f)
+/// The pressure from which the foundation gives way [Pa]: on a spring 0; inf where it never does.
+KOKKOS_INLINE_FUNCTION double gives_way_from(const Foundation &f)
 {
+  if (f.compliance > 0) return 0;
   return is_rigid(f.yield) ? math::infinity<double> : f.yield;
 }
 
