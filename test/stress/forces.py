@@ -276,8 +276,28 @@ def pressed_by_forces(rpc, moved, seed, number, folder):
     return by_force(deck, forces, times or [1.0], point), None
 
 
+def compared(found, reference):
+    """{quantity: (whether its bar holds, or why that is not known, bar over error or None)}"""
+    held, there = {}, quantities(reference)
+    for key, here in quantities(found).items():
+        if key not in there or key in ("estimated_error", "contact_pressure_error"):
+            continue
+        bar, known = here["error_bar"], there[key]["error_bar"]
+        if bar is None:
+            held[key] = ("null", None)
+            continue
+        if known is None or known > KNOWN * bar:
+            held[key] = ("unknown", None)
+            continue
+        values = [value if isinstance(value, list) else [value] for value in (here["value"], there[key]["value"])]
+        error = sum((a - b) ** 2 for a, b in zip(*values)) ** 0.5
+        rounding = 1e-7 * max(map(abs, values[1]))
+        held[key] = (error <= bar + known + rounding, bar / error if error > rounding else None)
+    return held
+
+
 def judge_bars(options, number):
-    """(complaint or None, what happened, {quantity: (whether its bar holds or None, bar over error or None)})"""
+    """(complaint or None, what happened, what compared() tells)"""
     rpc, moved, seed = options.rpc, options.moved, options.seed
     with trials.folder(options, str(number)) as folder:
         deck, none = pressed_by_forces(rpc, moved, seed, number, folder)
@@ -299,23 +319,9 @@ def judge_bars(options, number):
         fine["Mesh"].update(Element="P2", Cells=[(3 if space else 2) * cells // (2 if space else 1) for cells in deck["Mesh"]["Cells"]])
         fine["Adapt"].update({"Target Relative Error": target / (FINER * (1 if second else 2)), "Meshes": "gmsh"})
         code, reference, _, words = run(rpc, fine, folder, "fine")
-        if code not in (0, 4) or not reference or not reference["converged"]:
+        if code not in (0, 4) or not reference or not reference["converged"] or reference["time"] != found["time"]:
             return None, f"not compared: the reference ends with {code}: {words}", {}
-        held, there = {}, quantities(reference)
-        for key, here in quantities(found).items():
-            if key not in there or key in ("estimated_error", "contact_pressure_error"):
-                continue
-            bar, known = here["error_bar"], there[key]["error_bar"]
-            if bar is None:
-                held[key] = ("null", None)
-                continue
-            if known is None or known > KNOWN * bar:
-                held[key] = ("unknown", None)
-                continue
-            values = [value if isinstance(value, list) else [value] for value in (here["value"], there[key]["value"])]
-            error = sum((a - b) ** 2 for a, b in zip(*values)) ** 0.5
-            rounding = 1e-7 * max(map(abs, values[1]))
-            held[key] = (error <= bar + known + rounding, bar / error if error > rounding else None)
+        held = compared(found, reference)
         lost = [key for key, (holds, _) in held.items() if holds is False]
         what = f"{found['element']} {found.get('kinematics', 'space')}, {found['dofs']} dofs, reference {reference['dofs']}"
         return None, what + (f"; beyond their bars: {', '.join(lost)}" if lost else ""), held
@@ -326,6 +332,8 @@ def tell_bars(all_held, failed):
     shares = {}
     for key in sorted({key for held in all_held for key in held}):
         of = [held[key] for held in all_held if key in held]
+        if all(holds == "null" for holds, _ in of):
+            continue
         judged = [holds for holds, _ in of if isinstance(holds, bool)]
         ratios = [ratio for _, ratio in of if ratio is not None]
         count = lambda word: sum(holds == word for holds, _ in of)

@@ -117,6 +117,63 @@ TEST(ErrorBars, OfReactionsAreThoseOfForces)
               1e-12); // the reactions balance it: nothing else loads the body
 }
 
+/// 10 N along Y, which move a side, an obstacle and a rigid side with an arm of 0.5 m.
+Cycle pressed(const double estimate, const double moved)
+{
+  Cycle c = mesh(estimate, 10, 30);
+  c.reactions = {{0, -10, 0}};
+  c.motions.displacements = {{0, moved, 0}};
+  c.motions.rotations = {{0, 0, 0.01 * moved}};
+  c.motions.moments = {{0, 0, 0}};
+  c.motions.arms = {0.5};
+  c.motions.obstacle = {0, moved, 0};
+  c.motions.softness = {{0.5}, {3}, 0.01};
+  return c;
+}
+
+TEST(ErrorBars, OfWhatForcesMoveAreThoseOfForcesTimesHowSoftItIs)
+{
+  const std::vector<Cycle> agree = {pressed(0.1, 1), pressed(0.02, 1)};
+  const auto errors = observed_errors(agree).motions;
+  const double force = 2 * 0.02 * 0.02 * 10;
+  ASSERT_EQ(errors.displacements.size(), 1U);
+  EXPECT_NEAR(errors.displacements[0], 0.5 * force, 1e-15);
+  EXPECT_NEAR(errors.rotations[0], 3 * force, 1e-15);
+  EXPECT_NEAR(errors.moments[0], 0.5 * force, 1e-15);
+  EXPECT_NEAR(errors.obstacle, 2. / 100 * force, 1e-15); // stiffer than in the mean, a(u, u) / F^2
+  const auto change = observed_errors({pressed(0.1, 1), pressed(0.02, 1.4)}).motions;
+  EXPECT_NEAR(change.displacements[0], 0.4 / (0.1 / 0.02 - 1), 1e-12);
+  EXPECT_NEAR(change.obstacle, 0.4 / (0.1 / 0.02 - 1), 1e-12);
+  EXPECT_NEAR(change.rotations[0], 3 * force, 1e-15);
+}
+
+TEST(ErrorBars, OfForcesAndMomentsThatTheLoadFixesAreWhatMeshesShow)
+{
+  const adapt::FixedByLoad fixed = {{false, false, false}, {true}, {true}};
+  const std::vector<Cycle> cycles = {pressed(0.1, 1), pressed(0.02, 1)};
+  const auto errors = observed_errors(cycles, fixed, 1e-8);
+  EXPECT_EQ(errors.reactions[0], 0);
+  EXPECT_EQ(errors.motions.moments[0], 0);
+  EXPECT_GT(errors.motions.displacements[0], 0);
+  EXPECT_GT(errors.contact_force, 0);
+}
+
+TEST(ErrorBars, OfLoadStepsCountHowFarEarlierOnesHaveMoved)
+{
+  adapt::CoarserHistory coarser;
+  coarser.last = pressed(0.2, 1.3);
+  coarser.largest_estimate = 0.2 * std::sqrt(2.);
+  adapt::EarlierSteps earlier;
+  earlier.matter = true;
+  earlier.largest_estimate = 0.02 * std::sqrt(2.);
+  earlier.moved_by = 0.2;
+  const std::vector<Cycle> cycles = {pressed(0.1, 1), pressed(0.02, 1)};
+  const auto alone = observed_errors(cycles).motions, all = observed_errors(cycles, coarser, earlier).motions;
+  EXPECT_NEAR(all.obstacle - alone.obstacle, 0.3 / 9, 1e-12);
+  EXPECT_GT(all.displacements[0], alone.displacements[0]);
+  EXPECT_GT(all.rotations[0], alone.rotations[0]);
+}
+
 TEST(ErrorBars, OfAContactForceThatIsASmallPartOfTheLoadAreThoseOfReactions)
 {
   // A load of 200 N that the support bears but for 10 N; it moves by 0.01 m in the mean.

@@ -148,6 +148,32 @@ bool obstacle_rests(const Problem &problem, const StepSolution &s, const double 
   return !(length(left_to_go(problem, s)) > tolerance * s.u->normInf());
 }
 
+void rest_where_led(const Problem &problem, const Point &before, const double tolerance, StepSolution &s)
+{
+  const Point way = left_to_go(problem, s);
+  Point expected{}; // each component falls on as it has fallen
+  for (int c = 0; c < 3; ++c) expected[c] = before[c] != 0 ? way[c] * way[c] / before[c] : way[c];
+  if (pressed_by_force(problem.model())->obstacle.surface->is_flat) expected = {};
+  if (!(length(expected) <= tolerance * s.u->normInf())) return;
+  const int dim = problem.discretization().dim();
+  s.state = shifted(std::move(s.state), way, dim);
+  s.u = s.state.displacement;
+  for (int c = 0; c < 3; ++c) s.step.obstacle[c] += way[c];
+  const contact::ContactNodes points = s.step.contact;
+  const double by[3] = {way[0], way[1], way[2]};
+  const bool rubs = points.friction.anywhere;
+  Kokkos::parallel_for(
+      "rpc::analysis::rest_where_led", device_range(points.size()), KOKKOS_LAMBDA(const LO i) {
+        double further = 0;
+        for (int c = 0; c < points.dim; ++c) further += points.normal(i, c) * by[c];
+        points.gap(i) += further;
+        if (!points.fixed(i)) points.free_gap(i) += further; // else it says whether the point may touch
+        for (int c = 0; rubs && c < points.dim; ++c)
+          points.friction.from(i, c) += by[c] - further * points.normal(i, c);
+      });
+  Kokkos::fence();
+}
+
 RCP<const Vector> shifted(const Vector &u, const Point &shift, const int dim)
 {
   const auto moved = rcp(new Vector(u, Teuchos::Copy));

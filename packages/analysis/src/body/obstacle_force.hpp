@@ -32,6 +32,10 @@ Point left_to_go(const Problem &problem, const StepSolution &s);
 /// Whether that is no more than a tolerance, in units of the largest displacement: the contact points were seen from where the obstacle is. Collective.
 bool obstacle_rests(const Problem &problem, const StepSolution &s, double tolerance);
 
+/// Sees a solution from where it leads its obstacle, if searches from there are not expected to lead it further than a tolerance. Collective. (3.17d)
+/// @param before  see Starts::led_before
+void rest_where_led(const Problem &problem, const Point &before, double tolerance, StepSolution &s);
+
 /// A displacement or a state, seen from where body and obstacle are further by a shift [m].
 RCP<const Vector> shifted(const Vector &u, const Point &shift, int dim);
 contact::ContactState shifted(contact::ContactState state, const Point &shift, int dim);

@@ -320,6 +320,8 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
   Headway ways({step_rules.helpful, Headway::unlimited, step_rules.most_searches - 1}); // of the obstacle, which fall
   while (true) {
     const bool is_rough = !searched && bends(model);
+    starts.may_rest = by_force && !is_rough && !on_foundation;
+    starts.led_before = way_before;
     s = solve_step(*problem_, step, *state_, is_rough ? to_look_further(options) : options, starts, reports);
     ++last_.solves;
     add_work(s, last_);

@@ -110,6 +110,7 @@ StepSolution solve_with(const Problem &problem, const Step &step, SolverState &s
     if (!uzawa.converged && step.support.by_coulomb_only) tell_want_of_friction(uzawa, problem);
     s.u = s.state.displacement;
     s.state.rest = Teuchos::null; // of the judgement alone
+    if (uzawa.converged && starts.may_rest) rest_where_led(problem, starts.led_before, options.uzawa.tolerance, s);
     read_results(problem, options, state, s);
   }
   s.linear = counts_since(counts_before, state.linear().counts());

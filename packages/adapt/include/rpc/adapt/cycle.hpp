@@ -114,9 +114,9 @@ inline constexpr const char *may_touch =
 /// Which forces the load alone fixes.
 struct FixedByLoad {
   std::array<bool, 3>
-      contact{}; ///< components along which no displacement is prescribed, or a force moves the obstacle
-  std::vector<bool> reactions,
-      moments; ///< of each Dirichlet condition, of each rigid side: all components; empty: none
+      contact{}; ///< components without a prescribed displacement, or along which a force moves the obstacle
+  std::vector<bool> reactions = {}; ///< of each Dirichlet condition: all components; empty: none
+  std::vector<bool> moments = {};   ///< of each rigid side
 };
 FixedByLoad fixed_by_load(const analysis::Model &model);
 

@@ -84,6 +84,9 @@ struct Starts {
   std::vector<contact::ContactState> states;
   /// Asked where there is none, or the nearest is far from equilibrium; empty: there are no coarser meshes. Collective.
   std::function<Prediction()> predict;
+  bool may_rest =
+      false;          ///< the obstacle that a force moves, where the solution leads it to                       (3.17d)
+  Point led_before{}; ///< by the search before, of the same step [m]; 0: there was none
 };
 
 /// By how much forces of 1 N along unknown motions, or moments that 1 N has at the root mean square of a rigid side's arms, move what forces
