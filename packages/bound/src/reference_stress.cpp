@@ -257,7 +257,7 @@ private:
 };
 
 /// Products of the columns of stresses, by pairs of components: each with itself, then with those after it.
-DeviceView<double ***> energies(const SplitCell &c, const Dense &stress)
+EnergyTable energies(const SplitCell &c, const Dense &stress)
 {
   std::vector<std::array<int, 2>> pairs;
   for (int i = 0; i < c.components; ++i) pairs.push_back({i, i});
@@ -265,7 +265,7 @@ DeviceView<double ***> energies(const SplitCell &c, const Dense &stress)
     for (int j = i + 1; j < c.components; ++j) pairs.push_back({i, j});
   const Masses mass(c);
   const Dense left = transposed(stress);
-  DeviceView<double ***> table("rpc::bound::energies", pairs.size(), stress.cols, stress.cols);
+  EnergyTable table("rpc::bound::energies", pairs.size(), stress.cols, stress.cols);
   const auto host = Kokkos::create_mirror_view(table);
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const Dense e = product(left, product(mass(pairs[p][0], pairs[p][1]), stress));

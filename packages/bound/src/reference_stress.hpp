@@ -9,6 +9,9 @@
 namespace rpc::bound
 {
 
+/// (pairs, columns, columns) Each pair in one piece.
+using EnergyTable = Kokkos::View<double ***, Kokkos::LayoutRight, Device>;
+
 /// Symmetric stresses without divergence on a reference cell, piecewise polynomials of degree k on the triangles or tetrahedra that the
 /// centre makes with its facets, with tractions that agree where these parts meet.                          doc/theory.md (13.6)
 ///
@@ -28,8 +31,8 @@ struct ReferenceStress {
   DeviceView<double **> stress; ///< (coefficients, columns)
   /// (columns, coefficients) The same, each column in one piece.
   Kokkos::View<double **, Kokkos::LayoutRight, Device> by_column;
-  DeviceView<double ***>
-      energy; ///< (pairs, columns, columns) int s_c t_d, symmetric, of components cd = 00 11 .. 01 02 .. 12 ..
+  /// (pairs, columns, columns) int s_c t_d, symmetric, of components cd = 00 11 .. 01 02 .. 12 ..
+  EnergyTable energy;
   DeviceView<double ***> moment;    ///< (components, dim, columns) int s_c X_l, with X relative to the centre
   DeviceView<double ***> value;     ///< (sides, points, monomials) in the part at each side
   DeviceView<double **> weight;     ///< (sides, points) of integrals over the reference cell
@@ -52,7 +55,7 @@ ReferenceStress reference_stress(const mesh::Element &element);
 /// their products.
 struct LiftedLoads {
   int columns = 0;
-  DeviceView<double ***> energy; ///< (pairs, columns, columns), column (side, polynomial beyond degree k, component)
+  EnergyTable energy; ///< (pairs, columns, columns), column (side, polynomial beyond degree k, component)
 };
 LiftedLoads lifted_loads(const mesh::Element &element);
 

@@ -56,12 +56,12 @@ struct MakeSpaceForms {
     const AffineTetrahedron cell(in, c);
     double S[6][6], A[n][n], of_force[n];
     compliance_of_images(in, cell, c, S);
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j) A[i][j] = 0;
+    double factor[pairs];
     int pair = 0;
-    for (int p = 0; p < 6; ++p, ++pair) add(S[p][p], pair, A);
+    for (int p = 0; p < 6; ++p) factor[pair++] = S[p][p];
     for (int p = 0; p < 6; ++p)
-      for (int q = p + 1; q < 6; ++q, ++pair) add(S[p][q], pair, A);
+      for (int q = p + 1; q < 6; ++q) factor[pair++] = S[p][q];
+    sum_energies(factor, A);
     double image[3][6];
     image_of_force(in, cell, image);
     for (int i = 0; i < n; ++i) {
@@ -105,10 +105,17 @@ struct MakeSpaceForms {
     }
   }
 
-  KOKKOS_FUNCTION void add(const double factor, const int pair, double (&A)[Sizes::columns][Sizes::columns]) const
+  static constexpr int pairs = 21;
+  /// A <- the tables of pairs times factors, three at once.
+  KOKKOS_FUNCTION void sum_energies(const double (&factor)[pairs], double (&A)[Sizes::columns][Sizes::columns]) const
   {
-    for (int i = 0; i < Sizes::columns; ++i)
-      for (int j = 0; j < Sizes::columns; ++j) A[i][j] += factor * in.reference.energy(pair, i, j);
+    constexpr int size = Sizes::columns * Sizes::columns;
+    const double *table = in.reference.energy.data();
+    double *const sum = &A[0][0];
+    for (int k = 0; k < size; ++k) sum[k] = 0;
+    for (int p = 0; p < pairs; p += 3, table += 3 * size)
+      for (int k = 0; k < size; ++k)
+        sum[k] += factor[p] * table[k] + factor[p + 1] * table[size + k] + factor[p + 2] * table[2 * size + k];
   }
   /// A and the force's part with the inner stresses at their best, which are kept.
   KOKKOS_FUNCTION void eliminate_inner(const LO kind, double (&A)[Sizes::columns][Sizes::columns],
