@@ -223,6 +223,17 @@ meshio.write(sys.argv[2], out)
         (self.folder / "open.stl").write_text(text[:text.index("facet")] + text[text.index("endfacet") + 9:])
         (self.folder / "cube.yaml").write_text(CUBE.format(file="open.stl", head='Plane: "z = 1"', more=""))
         self.expect_refusal(self.rpc("--input=cube.yaml", code=None), 3, ["open.stl", "there is an open edge at ("])
+        lines = text.split("\n")
+        (self.folder / "open.stl").write_text("\n".join(lines[:28] + lines[29:62] + lines[63:]))  # gmsh would divide what it reads of it for ever
+        self.expect_refusal(self.rpc("--input=cube.yaml", code=None), 3, ["open.stl", "there is an open edge at ("])
+
+    @unittest.skipUnless(HAS_GMSH and HAS_MESHIO, "rpc was built without gmsh, or python3 has no meshio and h5py")
+    def test_of_damaged_files_a_remedy_is_told(self):
+        for name, damage in (("square.vtk", lambda text: text[:900]), ("square.unv", lambda text: text.replace("\n         3 ", "\n       999 ", 1)),
+                             ("cut.stl", lambda text: text[:400])):
+            text = (DATA / name).read_text() if name != "cut.stl" else stl_of_box(1, 1, 1)
+            (self.folder / name).write_text(damage(text))
+            self.expect_refusal(self.rpc(f"--mesh-info={name}", code=None), 3, [name, "damaged", "write it anew"])
 
 
 if __name__ == "__main__":

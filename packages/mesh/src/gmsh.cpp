@@ -99,13 +99,18 @@ bool needs_end(const std::string &code)
   return code.back() == '}' ? code.find('=') != code.npos : !std::strchr(";{,", code.back());
 }
 
-/// What to do about an error in a .geo: sentences behind gmsh's own words; empty if nothing is known.
+/// What to do about gmsh's complaint, most often of an error in a .geo: sentences behind gmsh's own words; empty if nothing is known.
 std::string complaint_remedy(const std::string &file, const std::string &complaint)
 {
   static const std::regex syntax(R"(line (\d+): syntax error \((.*)\).*)"), variable(R"(.*Unknown variable '(.*)'.*)"),
       unknown(R"(.*Unknown .*)"), no_file(R"(.*Unable to open file.*)"),
-      graphical(R"(.*graphical interface context.*)");
+      graphical(R"(.*graphical interface context.*)"),
+      no_triangles(R"(.*(Wrong number of points|Empty bounding box|No facets found|Error loading).*)");
   std::smatch found;
+  if (format_of(file) == MeshFormat::by_gmsh ||
+      (extension_of(file) == ".stl" && std::regex_match(complaint, no_triangles)))
+    return ". The file is damaged, or gmsh does not know what it holds: write it anew, " +
+           std::string(extension_of(file) == ".stl" ? "or as STEP" : "best as .msh or Exodus");
   if (std::regex_match(complaint, found, variable))
     return ". Write " + found[1].str() + " = ...; before it is used, or correct the name";
   if (complaint.find("for parametrization") != complaint.npos)

@@ -2,6 +2,7 @@
 #include "gmsh_process.hpp"
 
 #include "gmsh_wire.hpp"
+#include "mesh_formats.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/mesh/gmsh.hpp"
 #include "rpc/mesh/has_gmsh.hpp"
@@ -165,7 +166,10 @@ GmshContents run_gmsh(const std::string &where, const GmshRequest &request)
   std::string end = "ended without a mesh";
   if (status && WIFSIGNALED(*status)) end = std::string("broke down (") + strsignal(WTERMSIG(*status)) + ")";
   RPC_REQUIRE_CODE(!bytes.empty() && (!status || *status == 0), ExitCode::bad_mesh,
-                   where << "gmsh " << end << ", as it does when memory runs out or when sizes or numbers are absurd");
+                   where << "gmsh " << end
+                         << (format_of(request.file) == MeshFormat::by_gmsh
+                                 ? ", as it does on damaged files. Write it anew, best as .msh or Exodus"
+                                 : ", as it does when memory runs out or when sizes or numbers are absurd"));
   return unpacked_contents(bytes);
 }
 #else

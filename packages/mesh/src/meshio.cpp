@@ -110,7 +110,9 @@ GmshContents read_by_meshio(const std::string &where, const std::string &path)
   const std::string complaint = last_line(contents_of(errors));
   RPC_REQUIRE_CODE(!exited || WEXITSTATUS(status) != refused, ExitCode::bad_mesh, where << complaint);
   RPC_REQUIRE_CODE(exited && WEXITSTATUS(status) == 0, ExitCode::bad_mesh,
-                   where << "meshio cannot convert it: " << (complaint.empty() ? "it broke down" : complaint));
+                   where << "meshio cannot convert it: " << (complaint.empty() ? "it broke down" : complaint)
+                         << ". The file is damaged, or has what meshio does not read: write it anew, best as .msh or "
+                            "Exodus");
   GmshContents contents = read_msh(where, contents_of(mesh));
   contents.kind = {"set", "set", "set", "set"};
   contents.node_sets = true;
