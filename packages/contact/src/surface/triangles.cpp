@@ -50,7 +50,8 @@ struct Part {
   double sizes = 0;       ///< of its terms
 };
 
-std::vector<Part> parts_of(const Triangles &t, const Edges &edges)
+/// @param neighbours  (triangles, edges) the triangle beyond each edge
+std::vector<Part> parts_of(const Triangles &t, const std::vector<std::array<std::size_t, 3>> &neighbours)
 {
   std::vector<Part> parts;
   std::vector<char> seen(t.corners.size(), 0);
@@ -60,13 +61,14 @@ std::vector<Part> parts_of(const Triangles &t, const Edges &edges)
     Part part;
     part.triangles = {first};
     for (std::size_t n = 0; n < part.triangles.size(); ++n) {
-      const auto &each = t.corners[part.triangles[n]];
-      const double here = 2 * inner(area_vector(t, part.triangles[n]), t.points[each[0]]);
+      const std::size_t triangle = part.triangles[n];
+      const auto &each = t.corners[triangle];
+      const double here = 2 * inner(area_vector(t, triangle), t.points[each[0]]);
       part.six_volumes += here;
       part.sizes += std::abs(here);
       for (int k = 0; k < 3; ++k) {
         part.bounds.add(t.points[each[k]]);
-        const std::size_t other = edges.at({each[(k + 1) % 3], each[k]});
+        const std::size_t other = neighbours[triangle][k];
         if (std::exchange(seen[other], 1) == 0) part.triangles.push_back(other);
       }
     }
@@ -131,13 +133,18 @@ std::string fault_of(const Triangles &t)
                shown_place(t.points[here.first]) + " to " + shown_place(t.points[here.second]) + mend;
     }
   }
-  for (const auto &[edge, n] : edges)
-    if (edges.count({edge.second, edge.first}) == 0)
+  std::vector<std::array<std::size_t, 3>> neighbours(t.corners.size());
+  for (const auto &[edge, n] : edges) {
+    const auto other = edges.find({edge.second, edge.first});
+    if (other == edges.end())
       return "there is a hole: facet " + std::to_string(n + 1) + " has no neighbour at its edge from " +
              shown_place(t.points[edge.first]) + " to " + shown_place(t.points[edge.second]) +
              "; the surface must be closed, also below the side" + mend;
+    neighbours[n][std::find(t.corners[n].begin(), t.corners[n].end(), edge.first) - t.corners[n].begin()] =
+        other->second;
+  }
   if (t.corners.empty()) return "there are no facets; name a file that has some";
-  const std::vector<Part> parts = parts_of(t, edges);
+  const std::vector<Part> parts = parts_of(t, neighbours);
   const double six_volumes = std::accumulate(parts.begin(), parts.end(), 0.,
                                              [](const double sum, const Part &part) { return sum + part.six_volumes; });
   const Part *const wrong = parts.size() > 1 ? part_inside_out(t, parts) : nullptr;
