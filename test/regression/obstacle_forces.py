@@ -37,6 +37,7 @@ CUBE = """tool:
 """
 YIELDS, SPRINGS, RUBS = "Yield Stress: 40.0", "Stiffness: 3000.0\n    Yield Stress: 60.0", "Friction Coefficient: 0.3"
 ROLLER = "Type: sphere, Radius: 3.0, Centre: [0.9, 4.0 PATH] FORCE"
+ABOVE_NODE = ROLLER.replace("0.9", "0.875")  # touches at once where it starts, from where a path counts its slip
 BALL = "Type: sphere, Radius: 4.0, Centre: [0.5, 5.0 PATH, 0.55] FORCE"
 BEFORE_AXIS = "Type: sphere, Radius: 3.0, Centre: [0.0, 4.0 PATH] FORCE"
 STEPS = "Steps: {Times: [0.5, 1.0, 1.5, 2.0]}"
@@ -61,7 +62,7 @@ class ObstacleForces(WrittenDeckTestCase):
     def test_a_force_leads_to_the_place_that_takes_it(self):
         axisymmetric = "Kinematics: axisymmetric"
         scenes = [(BOX, ROLLER, "Q2", "", 0.02, ""), (BOX, ROLLER, "P1", YIELDS, 0.01, ""), (BOX, ROLLER, "Q1", SPRINGS, 0.03, ""),
-                  (BOX, ROLLER, "P2", RUBS, 0.02, ""), (BOX, BEFORE_AXIS, "Q2", YIELDS, 0.02, axisymmetric), (CUBE, BALL, "P1", "Yield Stress: 3.0e+7", 0.01, ""),
+                  (BOX, ABOVE_NODE, "P2", RUBS, 0.02, ""), (BOX, BEFORE_AXIS, "Q2", YIELDS, 0.02, axisymmetric), (CUBE, BALL, "P1", "Yield Stress: 3.0e+7", 0.01, ""),
                   (CUBE, BALL, "Q1", "", 0.01, "")]
         for deck, obstacle, element, law, depth, kinematics in scenes:
             with self.subTest(element=element, law=law, kinematics=kinematics):
@@ -74,6 +75,18 @@ class ObstacleForces(WrittenDeckTestCase):
                 work = force * -depth
                 self.assertAlmostEqual(found["energy_J"], given["energy_J"] - work, delta=1e-9 * abs(work))
                 self.assertLessEqual(sum(found["newton_iterations"]), 1.5 * sum(given["newton_iterations"]) + 5)
+
+    def test_the_way_of_a_tool_to_its_first_touch_is_no_slip(self):
+        found = []
+        for height in (4.0, 4.5, 3.98):  # near, away, in the body
+            deck = written(BOX, by_force(ROLLER.replace("4.0", repr(height)), "-40.0"), "Q1", law=RUBS, more="Steps: {Times: [1, 2]}")
+            found.append(self.solve(f"from_{height}", deck))
+            self.assertAlmostEqual(found[-1]["obstacle_displacement"][1], 4.0 - height - 0.024, delta=1e-4)
+        for key in ("max_shear", "stick_length", "slip_length", "dissipated_by_friction", "work", "strain_energy"):
+            values = [each["steps"][0][key] for each in found]
+            for value in values:
+                self.assertAlmostEqual(value, values[0], delta=1e-7 * max(map(abs, values)), msg=key)
+        self.assertGreater(found[0]["steps"][0]["stick_length"], 0)
 
     def test_a_plate_bears_its_force_and_the_weight_of_the_body_goes_to_the_support(self):
         plate = "Type: plane, Point: [0.0, 7.0], Normal: [0.0, -1.0], Force Y: -25.0"

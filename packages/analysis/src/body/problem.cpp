@@ -193,19 +193,19 @@ Step Problem::step(const double t, const MultiVector *const dents, const Memory 
 {
   const fem::Discretization &d = discretization();
   const bool by_force = pressed_by_force(model_) != nullptr;
+  const bool slips_first = !before && has_friction(model_.contact);
   Point moved = before ? before->obstacle : Point{};
-  if (obstacle)
-    moved = *obstacle;
-  else if (by_force && !before)
-    moved = approach(d, model_.seen_at(t));
+  if (by_force && !before && (!obstacle || slips_first)) moved = approach(d, model_.seen_at(t));
+  const Point slips_from = moved; // a tool's way to its first touch is no slip
+  if (obstacle) moved = *obstacle;
   const Model now = model_.seen_at(t, moved);
   auto dirichlet = prescribed_of(d, now);
   const Vector at_rest(d.owned_dofs);
   std::optional<contact::SlipStart> slip_start;
   if (has_friction(now.contact))
-    slip_start.emplace(contact::SlipStart{before ? *before->displacement : at_rest,
-                                          foundations_moved(model_, before ? before->time : time_at_rest(t), t,
-                                                            before ? before->obstacle : Point{}, moved)});
+    slip_start.emplace(
+        contact::SlipStart{before ? *before->displacement : at_rest,
+                           foundations_moved(model_, before ? before->time : time_at_rest(t), t, slips_from, moved)});
   Step step{
       t,
       {},
