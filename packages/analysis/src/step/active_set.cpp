@@ -234,7 +234,8 @@ bool ActiveSetLoop::is_new_choice()
       choice_ = iterate_.largest_changes(*choice_, part);
       if (choice_->changes > 0 && headway_.visit(choice_->fingerprint) == Answer::progress) return true;
     }
-  if (!rough_) return false; // what rough solves leave may decide; by good ones hardly a point goes to and fro
+  // What rough solves leave may decide; by good ones hardly a point goes to and fro. Those have been tried before a Tresca problem.
+  if (!rough_ || then_ == Then::nothing) return false;
   rough_ = false;
   headway_.forget_visits();
   headway_.visit(choice_->fingerprint);
