@@ -96,6 +96,16 @@ KOKKOS_INLINE_FUNCTION SlipBranch slip_instead(const SlipBranch &now, const Alon
   return {Slip::slip, s > 0 ? admissible_friction(q, s).scaled(1 / s) : q.unit()};
 }
 
+/// The lever by which a point may stick, unless it is so short that its penalty would amplify rounding too much.    (12.8a)
+/// @param stiffest  penalty over own stiffness, at most
+KOKKOS_INLINE_FUNCTION Along lever_at(const SmoothedPoints &s, const LO i, const State next, const double own,
+                                      const double stiffest)
+{
+  const ContactNodes &c = s.points;
+  const Along by = lever(next, c.law(i), NormalAt{c, i}, FreeAt{c.friction, i}, c.dim);
+  return s.penalty(i) <= stiffest * own * by.length() ? by : Along{};
+}
+
 /// (12.8)
 void choose_next_slip(const SmoothedPoints &s, const Vector &u, const ActiveSet &active,
                       const DeviceView<double *> &own, const double bound, const ActiveSetChoice &choice)
@@ -108,7 +118,8 @@ void choose_next_slip(const SmoothedPoints &s, const Vector &u, const ActiveSet 
   const auto direction = choice.direction, traction = choice.traction;
   const auto violated = choice.violation;
   const auto cannot_stick = choice.cannot_stick;
-  const double share = lag_rules.least_held;
+  const auto levers = choice.lever;
+  const double share = lag_rules.least_held, stiffest = penalty_rules.largest;
   Kokkos::parallel_for(
       "rpc::contact::next_slip", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
         const ContactNodes &c = s.points;
@@ -121,11 +132,15 @@ void choose_next_slip(const SmoothedPoints &s, const Vector &u, const ActiveSet 
         SlipBranch branch = next_slip(now.branch(i), turned, now.state(i), next(i), at.slip, row(traction, i),
                                       at.penetration, admissible(p(i), c.law(i)), own(i), bound, f);
         const double held = prescribed_slip(at.slip, NormalAt{c, i}, FreeAt{c.friction, i}, c.dim).length();
-        cannot_stick(i) =
-            own(i) * held > bound && s.penalty(i) * held > share * friction_bound(admissible(p(i), c.law(i)), f);
-        if (branch.state == Slip::stick && own(i) * held > bound)
+        const bool is_held = own(i) * held > bound;
+        const Along by = lever_at(s, i, next(i), own(i), stiffest);
+        if (branch.state == Slip::stick && is_held && by.length() == 0)
           branch = slip_instead(now.branch(i), turned, at.slip, row(traction, i),
                                 friction_bound(admissible(p(i), c.law(i)), f), c.dim);
+        const bool sticks = branch.state == Slip::stick;
+        cannot_stick(i) =
+            is_held && !sticks && s.penalty(i) * held > share * friction_bound(admissible(p(i), c.law(i)), f);
+        set_row(levers, i, sticks ? by : Along{});
         slips(i) = branch.state;
         set_row(direction, i, branch.direction);
         if (c.fixed(i)) return;
@@ -241,11 +256,13 @@ void keep_states(const ActiveSet &present, const ActiveSetChoice &choice, const 
   const auto state = choice.state;
   const auto slip = choice.slip;
   const auto direction = choice.direction;
+  const auto lever = choice.lever;
   const auto violated = choice.violation;
   Kokkos::parallel_for(
       "rpc::contact::keep_states", device_range(static_cast<LO>(state.extent(0))), KOKKOS_LAMBDA(const LO i) {
         if (!(violated(i) < bound)) return;
         state(i) = now.state(i);
+        set_row(lever, i, row(now.lever, i));
         if (slip(i) == now.slip(i)) return; // directions in space follow the slip
         slip(i) = now.slip(i);
         set_row(direction, i, row(now.direction, i));
@@ -268,6 +285,7 @@ void make_room_for_slip(const ContactNodes &c, ActiveSetChoice &choice)
   choice.slip = DeviceView<Slip *>("rpc::contact::next_slip", c.size());
   choice.direction = DeviceView<double **>("rpc::contact::next_slip_direction", c.size(), c.dim);
   choice.cannot_stick = DeviceView<bool *>("rpc::contact::cannot_stick", c.size());
+  choice.lever = DeviceView<double **>("rpc::contact::next_lever", c.size(), c.dim);
   choice.violation = DeviceView<double *>("rpc::contact::violation", c.size());
   if (choice.traction.extent(0) == 0)
     choice.traction = DeviceView<double **>("rpc::contact::chosen_by_traction", c.size(), c.dim);
@@ -328,6 +346,7 @@ void take_slip(const ActiveSetChoice &choice, const SmoothedPoints &points, cons
   const auto slips = choice.slip;
   const auto direction = choice.direction, traction = choice.traction;
   const auto cannot_stick = choice.cannot_stick;
+  const auto lever = choice.lever;
   const auto x = device_write(u);
   for_each_point_by_group(
       "rpc::contact::take_slip", s.points, KOKKOS_LAMBDA(const LO i) {
@@ -338,6 +357,7 @@ void take_slip(const ActiveSetChoice &choice, const SmoothedPoints &points, cons
         const double pressure = state(i) == State::open ? 0 : multiplier_of(state(i), p(i), c.law(i));
         to.slip(i) = branch.state;
         to.cannot_stick(i) = cannot_stick(i);
+        set_row(to.lever, i, row(lever, i));
         set_row(to.direction, i, branch.direction);
         set_row(s.multiplier.tangential, i, multiplier_of(branch, row(traction, i), pressure, f));
         s.bound(i) = friction_bound(pressure, f);

@@ -113,6 +113,7 @@ ActiveSet no_active_set(const ContactNodes &points)
   active.slip = DeviceView<Slip *>("rpc::contact::active_slip", points.size());
   active.direction = DeviceView<double **>("rpc::contact::active_slip_direction", points.size(), points.dim);
   active.cannot_stick = DeviceView<bool *>("rpc::contact::active_cannot_stick", points.size());
+  active.lever = DeviceView<double **>("rpc::contact::active_lever", points.size(), points.dim);
   active.linearized_at = DeviceView<double **>("rpc::contact::linearized_at", points.size(), points.dim);
   return active;
 }

@@ -249,6 +249,7 @@ void SmoothedFunctional::take_states(const Vector &u, const ActiveSet &active) c
         to.slip(i) = slip_state(a, s.bound(i));
         set_row(to.direction, i, a.unit());
         to.cannot_stick(i) = false;
+        set_row(to.lever, i, {});
         set_row(to.linearized_at, i, a);
       });
   Kokkos::fence();

@@ -272,6 +272,42 @@ TEST(Friction, PrescribedSlipIsWhatNoFreeMoveAlongTheSideChanges)
   EXPECT_EQ(prescribed_slip(e, Normal{}, all, 3).length(), 0);
 }
 
+/// (12.8a)
+TEST(Friction, APointOnSpringsSticksByTheLeverOfItsNormal)
+{
+  const Foundation springs{inf, 0, 0.05};
+  const auto of = [](const State next, const Foundation &f) { return lever(next, f, Normal{}, Free{}, 3); };
+  const Along by = of(State::closed, springs), move = Along{{0.64, 0, -0.48}}.unit();
+  const Along normal{{Normal{}(0), Normal{}(1), Normal{}(2)}};
+  EXPECT_NEAR(by.length(), std::abs(normal(1)), 1e-15);
+  EXPECT_NEAR(by.dot(normal), 0, 1e-15);
+  EXPECT_NEAR(by.dot(move), 0, 1e-15);
+  EXPECT_GT(of(State::yielding, Foundation{3}).length(), 0);
+  EXPECT_EQ(of(State::closed, Foundation{inf}).length(), 0); // which holds its normal
+  EXPECT_EQ(of(State::open, springs).length(), 0);
+  EXPECT_EQ(lever(
+                State::closed, springs, Normal{}, [](const int) { return true; }, 3)
+                .length(),
+            0);
+
+  const SlipBranch sticks{Slip::stick, {}, false, by};
+  const Along u{{0.05, 0, -0.08}}, up = Along{{normal(0), 0, normal(2)}}.unit(); // what is free of the normal
+  const Friction coulomb{0.4, 0, inf};
+  EXPECT_LT(errors_of_differences([&](const Along &x) { return on_branch(x, State::closed, sticks, springs, coulomb); },
+                                  u, 1e-3)
+                .block,
+            1e-10);
+  const Response all = on_branch(u, State::closed, sticks, springs, coulomb),
+                 contact = respond_on_branch(State::closed, at(u), lambda, r, springs, Direction{}, weight, 3);
+  double stiffness = 0;
+  for (const int k : {0, 2})
+    for (const int l : {0, 2}) stiffness += up(k) * (all.block[k][l] - contact.block[k][l]) * up(l);
+  EXPECT_NEAR(stiffness, weight * r, 1e-12 * weight * r);
+  EXPECT_GT(trial_traction(sticks, {}, r, by).length(), r * by.length());
+  EXPECT_NEAR(trial_traction(sticks, {}, r, move).plus(-r, move).length(), 0,
+              1e-12 * r); // without a part along the lever
+}
+
 TEST(Friction, StatesChangeByTheNeighbourRule)
 {
   const Friction coulomb{0.5, 0, inf}, tresca{0, 1, inf};

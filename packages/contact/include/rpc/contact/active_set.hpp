@@ -15,6 +15,7 @@ struct ActiveSetChoice {
   DeviceView<Slip *> slip = {};         ///< (contact nodes) of friction; empty: there is none
   DeviceView<double **> direction = {}; ///< (contact nodes, dim) where a point slips: h in the plane, g in space
   DeviceView<bool *> cannot_stick = {}; ///< (contact nodes) slips: a part of its slip is prescribed
+  DeviceView<double **> lever = {};     ///< (contact nodes, dim) by which a point sticks, (12.8a); else 0
   DeviceView<double *> violation = {};  ///< (contact nodes) of the law by points whose state is to change, else 0 [Pa]
   DeviceView<double **> traction = {};  ///< (contact nodes, dim) along the side that slip was chosen by [Pa]
   GO changes = 0;                       ///< points on all ranks whose state is to change

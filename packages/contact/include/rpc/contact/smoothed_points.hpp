@@ -50,7 +50,12 @@ struct ActiveSet {
   DeviceView<bool *> cannot_stick = {};     ///< (points) slips: a part of its slip is prescribed
   DeviceView<double **> linearized_at = {}; ///< (points, dim) lambda_tau + r e where the branches were linearized [Pa]
 
-  KOKKOS_INLINE_FUNCTION SlipBranch branch(const LO i) const { return {slip(i), row(direction, i), cannot_stick(i)}; }
+  DeviceView<double **> lever = {}; ///< (points, dim) by which a point sticks, (12.8a); else 0
+
+  KOKKOS_INLINE_FUNCTION SlipBranch branch(const LO i) const
+  {
+    return {slip(i), row(direction, i), cannot_stick(i), row(lever, i)};
+  }
 };
 
 /// The contact points of a smoothed functional: what its formulas need of each.

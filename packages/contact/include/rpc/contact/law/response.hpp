@@ -37,6 +37,7 @@ struct SlipBranch {
   Slip state = Slip::stick;
   Along direction = {};
   bool cannot_stick = false; ///< it slips, since a part of its slip is prescribed
+  Along lever = {};          ///< by which a point sticks one of whose unknowns is prescribed; else 0. (12.8a)
 };
 
 /// w a m m^T, the block of a stiffness a along m [Pa/m].
@@ -106,12 +107,21 @@ KOKKOS_INLINE_FUNCTION void add_friction(const Motion &at, const Multiplier &mul
   response.energy += w * smoothed_friction_energy(a, multiplier.tangential, s, r);
 }
 
+/// The penalty of a branch along its lever l: r/|l|^2, so that what it adds along the free unknowns is r. (12.8a)
+KOKKOS_INLINE_FUNCTION double penalty_along_lever(const SlipBranch &branch, const double r)
+{
+  const double square = branch.lever.dot(branch.lever);
+  return square > 0 ? r / square : r;
+}
+
 /// lambda_tau + r e, what states and directions in space are chosen by; of a point that cannot stick r e: the multiplier would lag behind a
-/// direction that a small prescribed slip holds. (12.13)
+/// direction that a small prescribed slip holds. (12.13) Of one that sticks by a lever with more than r along it. (12.8a)
 KOKKOS_INLINE_FUNCTION Along trial_traction(const SlipBranch &branch, const Along &multiplier, const double r,
                                             const Along &e)
 {
-  return branch.cannot_stick ? e.scaled(r) : multiplier.plus(r, e);
+  if (branch.cannot_stick) return e.scaled(r);
+  const Along d = branch.lever.unit();
+  return multiplier.plus(r, e).plus((penalty_along_lever(branch, r) - r) * e.dot(d), d);
 }
 
 /// Traction on the branch of a friction state, whether the law admits it or not: lambda_tau + r e, or s h with s at the pressure p. In the
@@ -150,7 +160,8 @@ add_friction_on_branch(const State state, const SlipBranch &branch, const Motion
   const double p = branch_pressure(state, at.penetration, multiplier.normal, r, foundation);
   const Along a = trial_traction(branch, multiplier.tangential, r, at.slip),
               q = traction_on_branch(branch, a, p, f, dim);
-  if (branch.state == Slip::stick) return add_traction(w, q, {r, r}, {}, normal, free, dim, response);
+  if (branch.state == Slip::stick)
+    return add_traction(w, q, {r, penalty_along_lever(branch, r)}, branch.lever.unit(), normal, free, dim, response);
   const Along h = dim == 2 ? branch.direction : a.unit();
   const double size = a.length(), s = friction_bound(p, f);
   const double across = dim == 2 || !(s > 0) ? 0 : (s < size || branch.cannot_stick ? r * s / size : r);

@@ -120,6 +120,28 @@ KOKKOS_INLINE_FUNCTION Along prescribed_slip(const Along &e, const Normal &norma
   return prescribed;
 }
 
+/// The lever by which a point sticks one of whose unknowns, k, is prescribed: along (I - nu nu^T) e_k, |nu_k| long. What the free unknowns do
+/// to the slip along it is their motion along the normal times nu_k, as far as the foundation gives way. 0 where the point cannot stick so.
+/// (12.8a)
+/// @param next  state of contact   @param normal  (dim) nu   @param free  (dim) 0 where the displacement is prescribed
+template <class Normal, class Free>
+KOKKOS_INLINE_FUNCTION Along lever(const State next, const Foundation &f, const Normal &normal, const Free &free,
+                                   const int dim)
+{
+  const bool gives = next == State::yielding || (next == State::closed && f.compliance > 0);
+  int prescribed = -1, num_free = 0;
+  for (int k = 0; k < dim; ++k) {
+    if (free(k))
+      ++num_free;
+    else
+      prescribed = k;
+  }
+  Along along;
+  if (!gives || num_free != dim - 1 || normal(prescribed) == 0) return along;
+  for (int k = 0; k < dim; ++k) along.x[k] = (k == prescribed ? 1. : 0.) - normal(prescribed) * normal(k);
+  return along.unit().scaled(math::magnitude(normal(prescribed)));
+}
+
 /// The same of friction on its branch.
 KOKKOS_INLINE_FUNCTION double violation(const SlipBranch &now, const Along &e, const Along &q, const double p,
                                         const double own, const Friction &f)
