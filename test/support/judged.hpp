@@ -10,7 +10,7 @@ namespace rpc::test
 /// An iterate's multipliers with a displacement from 0, whatever its origin is.
 inline contact::ContactState judged_at(const contact::Iterate &iterate, const Vector &from_0)
 {
-  return {rcp(new Vector(from_0, Teuchos::Copy)), iterate.multipliers(), {}};
+  return {rcp(new Vector(from_0, Teuchos::Copy)), iterate.duals().multipliers(), {}};
 }
 inline double contact_law_residual(const contact::Iterate &iterate, const Vector &from_0)
 {
@@ -34,7 +34,7 @@ inline double energy(const contact::Iterate &iterate, const fem::ElasticProblem 
 }
 inline Vector multiplier_forces(const contact::Iterate &iterate)
 {
-  return contact::multiplier_forces(iterate.points(), iterate.multipliers(), iterate.hessian()->getDomainMap());
+  return contact::multiplier_forces(iterate.points(), iterate.duals().multipliers(), iterate.hessian()->getDomainMap());
 }
 
 } // namespace rpc::test

@@ -65,7 +65,7 @@ Descent descent(const std::string &method, const double penalty)
         [&](const solver::NewtonStep &, const Vector &at) { found.smoothed.back().push_back(iterate.value(at)); });
     EXPECT_TRUE(result.converged) << result.reason;
     found.tresca.push_back(tresca(problem, step, *u));
-    if (iterate.update_multipliers(*u) < 1e-9) break;
+    if (iterate.duals().update(*u) < 1e-9) break;
   }
   found.scale = std::abs(found.tresca.back());
   return found;

@@ -59,16 +59,16 @@ TEST(ActiveSet, OfTheBeamOnItsFoundationIsConfirmedByNewtonAtOnce)
       EXPECT_GE(found.steps, 1) << xi;
       EXPECT_LE(found.steps, 9) << xi;
       EXPECT_LE(found.newton_steps(), 1) << xi;
-      const auto states = beam.iterate->count_states(*beam.u);
+      const auto states = beam.iterate->functional().count_states(*beam.u);
       EXPECT_EQ(num_points(states), 79);
       const auto newton = minimize(beam);
       EXPECT_TRUE(newton.converged) << xi << ": " << newton.reason;
       EXPECT_LE(newton.steps, 1) << xi;
-      const auto confirmed = beam.iterate->count_states(*beam.u);
+      const auto confirmed = beam.iterate->functional().count_states(*beam.u);
       EXPECT_EQ(states.open, confirmed.open) << xi;
       EXPECT_EQ(states.closed, confirmed.closed) << xi;
       EXPECT_EQ(states.yielding, confirmed.yielding) << xi;
-      beam.iterate->update_multipliers(*beam.u);
+      beam.iterate->duals().update(*beam.u);
       EXPECT_LT(contact_law_residual(*beam.iterate, *beam.iterate->state(*beam.u).displacement), 1e-5) << xi;
     }
   }
@@ -266,7 +266,7 @@ TEST(ActiveSet, BeginsWithWhatFoundTheStatesOfTheMeshThatPredicts)
       }
       EXPECT_GE(loop.found_by(), coarser);
       steps[k] += all.steps;
-      states[k] = strip.iterate->count_states(*strip.u);
+      states[k] = strip.iterate->functional().count_states(*strip.u);
       EXPECT_EQ(states[k].open, states[0].open);
       EXPECT_EQ(states[k].closed, states[0].closed);
       EXPECT_EQ(states[k].yielding, states[0].yielding);
@@ -325,7 +325,7 @@ TEST(ActiveSet, StepsAreReportedLikeNewtons)
   std::vector<GO> points;
   const Found found = solve(beam, {}, [&](const solver::NewtonStep &step, const Vector &u) {
     seen.push_back(step);
-    points.push_back(num_points(beam.iterate->count_states(u)));
+    points.push_back(num_points(beam.iterate->functional().count_states(u)));
   });
   ASSERT_TRUE(found.confirmed);
   ASSERT_EQ(static_cast<int>(seen.size()), found.steps + 1); // with the start
@@ -360,7 +360,7 @@ TEST(ActiveSet, IsUndoneWhereTheSystemCannotBeSolved)
   minimize(beam, options, std::ref(loop));
   EXPECT_EQ(loop.steps(), 0);
   EXPECT_FALSE(loop.confirmed());
-  const auto lambda = to_host(beam.iterate->multipliers().normal);
+  const auto lambda = to_host(beam.iterate->duals().multipliers().normal);
   double sum = 0;
   for (std::size_t i = 0; i < lambda.extent(0); ++i) sum += lambda(i);
   EXPECT_EQ(sum_all(beam.d.mesh->comm(), sum), 79 * 8.);

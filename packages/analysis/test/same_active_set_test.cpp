@@ -22,7 +22,7 @@ TEST(SameActiveSet, StopsAtTheUsersStatusTests)
   tests.set("Maximum Iterations", 1);
   Beam beam;
   ASSERT_TRUE(minimize(beam).converged);
-  beam.iterate->update_multipliers(*beam.u);
+  beam.iterate->duals().update(*beam.u);
   const auto from_same = [&](auto &steps) { return analysis::minimize_from_same_active_set(*beam.iterate, steps); };
   const auto result = minimize(beam, options, from_same);
   EXPECT_FALSE(result.converged);
@@ -41,7 +41,7 @@ TEST(SameActiveSet, AfterAMultiplierUpdateTakesOneStepWhereThePapersNewtonTakesM
     for (const bool same : {true, false}) {
       Beam beam({}, below(ScalarField(xi), 0, ScalarField(0.)));
       ASSERT_TRUE(minimize(beam, papers).converged);
-      beam.iterate->update_multipliers(*beam.u);
+      beam.iterate->duals().update(*beam.u);
       beam.iterate->move_origin(*beam.u);
       const auto from_same = [&](auto &steps) { return analysis::minimize_from_same_active_set(*beam.iterate, steps); };
       const auto result = same ? minimize(beam, {}, from_same) : minimize(beam, papers);

@@ -44,7 +44,7 @@ struct Stubbed {
     bool over = false;
     while (!over) {
       penalties.push_back(largest_penalty());
-      result.multiplier_change = iterate.update_multipliers(*u);
+      result.multiplier_change = iterate.duals().update(*u);
       const double previous = result.residuals.worst();
       result.residuals.kkt_residual =
           penalties.size() <= residuals.size() ? residuals[penalties.size() - 1] : residuals.back();
@@ -59,7 +59,7 @@ struct Stubbed {
   }
   double largest_penalty() const
   {
-    const auto penalty = to_host(scene.iterate->penalty());
+    const auto penalty = to_host(scene.iterate->duals().penalty());
     double largest = 0;
     for (std::size_t i = 0; i < penalty.extent(0); ++i) largest = std::max(largest, penalty(i));
     return max_all(scene.d.mesh->comm(), largest);

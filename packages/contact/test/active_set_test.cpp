@@ -44,7 +44,7 @@ void expect_multipliers(const Scene &scene, const double first, const double oth
   const auto &c = scene.iterate->points();
   const auto coords = to_host(scene.d.mesh->coords);
   const auto node = to_host(c.node);
-  const auto lambda = to_host(scene.iterate->multipliers().normal);
+  const auto lambda = to_host(scene.iterate->duals().multipliers().normal);
   for (LO i = 0; i < c.size(); ++i)
     EXPECT_NEAR(lambda(i), coords(node(i), 0) == 0 ? first : others, 1e-14) << coords(node(i), 0);
 }
@@ -186,7 +186,7 @@ TEST(HoldByContact, KeepsTheHessianPositiveDefiniteWhereNoNodeIsClosed)
   for (const OnRollers *scene : {&loose, &held}) {
     scene->iterate->update_hessian(*scene->down(0.2)); // yielding or closed
     scene->iterate->update_hessian(*scene->down(0));
-    EXPECT_EQ(scene->iterate->count_states(*scene->down(0)).open, num_nodes);
+    EXPECT_EQ(scene->iterate->functional().count_states(*scene->down(0)).open, num_nodes);
   }
   const double rounding = 1e-12 * held.material.youngs_modulus;
   EXPECT_NEAR(loose.stiffness_down(), 0, rounding);

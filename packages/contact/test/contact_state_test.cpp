@@ -46,7 +46,8 @@ TEST(StartFrom, CarriesAffineDisplacementsAndMultipliersSideBySide)
                            u);
   u.update(-1., *fine.vector(displacement), 1.);
   EXPECT_LT(u.norm2(), 1e-14);
-  const auto found = to_host(fine.iterate->multipliers().normal), expected = to_host(at_contact_nodes(fine, pressure));
+  const auto found = to_host(fine.iterate->duals().multipliers().normal),
+             expected = to_host(at_contact_nodes(fine, pressure));
   const auto fixed = to_host(fine.iterate->points().fixed);
   const auto coords = to_host(fine.d.mesh->coords);
   const auto node = to_host(fine.iterate->points().node);
@@ -104,7 +105,8 @@ TEST(StartFrom, LeavesPrescribedDisplacementsAndStaysWithinTheYieldLimit)
     if (fixed(dof)) {
       EXPECT_EQ(now(dof, 0), prescribed(dof, 0)) << dof;
     }
-  const auto lambda = to_host(fine.iterate->multipliers().normal), xi = to_host(fine.iterate->points().law.yield);
+  const auto lambda = to_host(fine.iterate->duals().multipliers().normal),
+             xi = to_host(fine.iterate->points().law.yield);
   for (std::size_t i = 0; i < lambda.extent(0); ++i) {
     EXPECT_GE(lambda(i), 0);
     EXPECT_LE(lambda(i), xi(i));

@@ -46,7 +46,8 @@ struct Pair {
   }
   void expect_equal_multipliers() const
   {
-    const auto a = to_host(moved.iterate->multipliers().normal), b = to_host(still.iterate->multipliers().normal);
+    const auto a = to_host(moved.iterate->duals().multipliers().normal),
+               b = to_host(still.iterate->duals().multipliers().normal);
     for (std::size_t i = 0; i < a.extent(0); ++i) EXPECT_NEAR(a(i), b(i), 1e-13);
   }
 };
@@ -67,7 +68,7 @@ TEST(MoveOrigin, ChangesNothingInGradientsAndStates)
     const Vector from_0 = pair.from_0(*u), further_from_0 = pair.from_0(*further);
     auto &moved = *pair.moved.iterate, &still = *pair.still.iterate;
     EXPECT_EQ(moved.update_hessian(*u), still.update_hessian(from_0));
-    const auto a = moved.count_states(*u), b = still.count_states(from_0);
+    const auto a = moved.functional().count_states(*u), b = still.functional().count_states(from_0);
     EXPECT_EQ(a.open, b.open);
     EXPECT_EQ(a.closed, b.closed);
     EXPECT_EQ(a.yielding, b.yielding);
@@ -107,8 +108,8 @@ TEST(MoveOrigin, ChangesNothingInMultiplierUpdates)
   const Pair pair;
   for (const double phase : {0.4, 2.1}) {
     const auto u = pair.still.vector(0.05, phase);
-    const double change = pair.still.iterate->update_multipliers(pair.from_0(*u));
-    EXPECT_NEAR(pair.moved.iterate->update_multipliers(*u), change, 1e-13);
+    const double change = pair.still.iterate->duals().update(pair.from_0(*u));
+    EXPECT_NEAR(pair.moved.iterate->duals().update(*u), change, 1e-13);
     pair.expect_equal_multipliers();
     // energies and the contact law take displacements from 0 in both
     const Vector from_0 = pair.from_0(*u);
@@ -143,15 +144,15 @@ TEST(MoveOrigin, PenetrationsKeepDigitsOfTheirOwn)
   iterate.move_origin(*u); // leaves v = 1e-6 and the rounding of far
   const auto copy = [&] {
     HostView<double *> lambda("lambda", iterate.points().size());
-    Kokkos::deep_copy(lambda, to_host(iterate.multipliers().normal));
+    Kokkos::deep_copy(lambda, to_host(iterate.duals().multipliers().normal));
     return lambda;
   };
   const auto zero = scene.vector(0, 0);
-  iterate.update_multipliers(*zero);
+  iterate.duals().update(*zero);
   const auto before = copy();
-  iterate.update_multipliers(*zero);
+  iterate.duals().update(*zero);
   const auto once = copy();
-  iterate.update_multipliers(*scene.vector([](const Point &) { return Point{0, -change, 0}; }));
+  iterate.duals().update(*scene.vector([](const Point &) { return Point{0, -change, 0}; }));
   const auto twice = copy();
   for (LO i = 0; i < iterate.points().size(); ++i) {
     EXPECT_NEAR(once(i) - before(i), penalty * 1e-6, penalty * 1e-12);

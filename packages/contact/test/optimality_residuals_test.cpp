@@ -58,7 +58,7 @@ struct Judged : Scene {
     const auto node = to_host(c.node);
     const auto m = to_host(c.direction);
     const auto w = to_host(c.weight), gap = to_host(c.free_gap), xi = to_host(c.law.yield),
-               lambda = to_host(iterate->multipliers().normal);
+               lambda = to_host(iterate->duals().multipliers().normal);
     const auto x = u.getLocalViewHost(Tpetra::Access::ReadOnly);
     double sum = 0;
     for (LO i = 0; i < c.size(); ++i)
@@ -89,7 +89,7 @@ struct Judged : Scene {
         u->update(step_along(iterate->along(*u, d, F)), d, 1.);
         if (d.normInf() < 1e-15) break;
       }
-      if (iterate->update_multipliers(*u) < 1e-14) break;
+      if (iterate->duals().update(*u) < 1e-14) break;
     }
     return u;
   }
@@ -147,7 +147,7 @@ TEST(OptimalityResiduals, EquilibriumResidualIsThatOfTheMatrix)
   for (const Point top : {Point{}, Point{0.03, -0.02, 0}}) {
     const Judged scene({below(40), beside(25)}, top);
     const auto u = scene.displacement(0.05, 0.4);
-    scene.iterate->update_multipliers(*u);
+    scene.iterate->duals().update(*u);
     const double scale = std::max({scene.iterate->force_scale(), multiplier_forces(*scene.iterate).norm2(),
                                    fem::internal_work(scene.d, scene.material, *u).force_norm});
     const double expected = scene.residual(*u).norm2() / scale;
@@ -161,7 +161,7 @@ TEST(OptimalityResiduals, EnergyBalanceIsWhatTheResidualDoesAlongTheFreeUnknowns
   for (const Point top : {Point{}, Point{0.03, -0.02, 0}}) {
     const Judged scene({below(40), beside(25)}, top);
     const auto u = scene.displacement(0.05, 0.4);
-    scene.iterate->update_multipliers(*u);
+    scene.iterate->duals().update(*u);
     // Less the translation by the prescribed displacement, nothing is left of that.
     const auto translated = scene.vector([&](const Point &) { return top; }); // 0 where prescribed
     const Vector free = *plus(*plus(*u, -1, *scene.elastic.dirichlet.value), -1, *translated);
@@ -180,8 +180,8 @@ TEST(OptimalityResiduals, DualityGapIsThePrimalLessTheDualEnergy)
   for (const Point top : {Point{}, Point{0.03, -0.02, 0}}) {
     const Judged scene({below(40)}, top);
     const auto u = scene.displacement(0.05, 0.4);
-    scene.iterate->update_multipliers(*u);
-    const auto lambda = to_host(scene.iterate->multipliers().normal);
+    scene.iterate->duals().update(*u);
+    const auto lambda = to_host(scene.iterate->duals().multipliers().normal);
     double largest = 0;
     for (std::size_t i = 0; i < lambda.extent(0); ++i) largest = std::max(largest, lambda(i));
     ASSERT_GE(2 * max_all(scene.d.mesh->comm(), largest), 3); // else the highest yield limit would be cut
@@ -207,9 +207,9 @@ TEST(OptimalityResiduals, ContactEnergyIsSummedOverThePointsWithTwiceTheLargestM
   rigid.yield_stress = ScalarField(std::numeric_limits<double>::infinity());
   const Judged scene({rigid});
   const auto u = scene.displacement(0.05, 0.4);
-  scene.iterate->update_multipliers(*u);
+  scene.iterate->duals().update(*u);
   double largest = 0;
-  const auto lambda = to_host(scene.iterate->multipliers().normal);
+  const auto lambda = to_host(scene.iterate->duals().multipliers().normal);
   for (std::size_t i = 0; i < lambda.extent(0); ++i) largest = std::max(largest, lambda(i));
   largest = max_all(scene.d.mesh->comm(), largest);
   ASSERT_GT(largest, 0.1);
@@ -227,7 +227,7 @@ TEST(OptimalityResiduals, OfTheSolutionIsZero)
   for (const Point top : {Point{}, Point{0.3, -0.2, 0}, Point{-0.1, 0.1, 0}}) {
     const Judged scene({below(40), beside(25)}, top);
     const auto u = scene.solution();
-    const auto states = scene.iterate->count_states(*u);
+    const auto states = scene.iterate->functional().count_states(*u);
     seen.open += states.open;
     seen.closed += states.closed;
     seen.yielding += states.yielding;
@@ -286,7 +286,7 @@ TEST(OptimalityResiduals, GrowsWithADisturbanceOfTheMultipliers)
   const auto disturbed = [](const double t) {
     const Judged scene;
     const auto u = scene.solution();
-    scene.iterate->update_multipliers(*plus(*u, t, *scene.vector(1, 2)));
+    scene.iterate->duals().update(*plus(*u, t, *scene.vector(1, 2)));
     return scene.residuals(*u);
   };
   const auto whole = disturbed(1e-5);
@@ -324,7 +324,7 @@ TEST(OptimalityResiduals, DoesNotSeeARigidMotionOfBodyAndFoundation)
     foundation.gap = field([r](const Point &x) { return 0.02 * (1 - x[0]) - r.y - r.turn * x[0]; }); // normal (0, -1)
     const Judged scene({foundation}, {"top", "top", {x_motion, y_motion}});
     const auto u = scene.solution(), d = scene.vector(1, 2);
-    scene.iterate->update_multipliers(*plus(*u, t, *d));
+    scene.iterate->duals().update(*plus(*u, t, *d));
     return scene.residuals(*plus(*u, t, *scene.vector(1, 0.5)));
   };
   for (const Motion r : {Motion{0.5, -0.25, 0}, {-30, 20, 0}, {0, 0, 40}}) {
@@ -349,7 +349,7 @@ TEST(OptimalityResiduals, OfABodyThatItsSupportsLiftOffAreRounding)
   weightless.applied_load = rcp(new Vector(load->getMap()));
   const auto lifted = scene.vector([](const Point &) { return Point{0.3, 0.7, 0}; });
   lifted->update(1., *weightless.dirichlet.value, 1.);
-  scene.iterate->update_multipliers(*lifted);
+  scene.iterate->duals().update(*lifted);
   const auto judged = [&](const double disturbance) {
     return contact::optimality_residuals(scene.d, scene.material, weightless, scene.iterate->points(),
                                          judged_at(*scene.iterate, *plus(*lifted, disturbance, *scene.vector(1, 0.5))),
@@ -364,7 +364,7 @@ TEST(OptimalityResiduals, WhatRoundingLeavesOfTheDisplacementCounts)
 {
   const Judged scene;
   const auto u = scene.displacement(0.05, 0.4), rest = scene.vector(1e-3, 0.7);
-  scene.iterate->update_multipliers(*u);
+  scene.iterate->duals().update(*u);
   auto state = judged_at(*scene.iterate, *u);
   state.rest = rest;
   const auto judged = [&](const contact::ContactState &at) {

@@ -34,7 +34,7 @@ const std::vector<std::vector<contact::ContactOptions>> &all_foundations()
 }
 void expect_all_states(const contact::Iterate &iterate, const Vector &u)
 {
-  const auto states = iterate.count_states(u);
+  const auto states = iterate.functional().count_states(u);
   EXPECT_GT(states.open, 0);
   EXPECT_GT(states.closed, 0);
   EXPECT_GT(states.yielding, 0);
@@ -94,17 +94,17 @@ TEST(OtherFoundations, ResidualDualityGapAndEnergyAgreeWhereTheLawHoldsAndTellWh
     const Scene scene(options);
     auto &iterate = *scene.iterate;
     const auto u = scene.vector(0.08, 0.4);
-    iterate.update_multipliers(*scene.vector(0.08, 3.4));
+    iterate.duals().update(*scene.vector(0.08, 3.4));
     EXPECT_GT(contact_law_residual(iterate, *u), 1e-3);
     EXPECT_GT(contact_energy(iterate, *u).duality_gap, 1e-4);
-    for (int k = 0; k < 400; ++k) iterate.update_multipliers(*u); // at a fixed u
+    for (int k = 0; k < 400; ++k) iterate.duals().update(*u); // at a fixed u
     EXPECT_LT(contact_law_residual(iterate, *u), 1e-13);
     EXPECT_NEAR(contact_energy(iterate, *u).duality_gap, 0, 1e-13);
     // J = Pi + sum of w psi(v), by hand: psi is what is in springs, and what new dents have taken up
     const auto &c = iterate.points();
     const auto weight = to_host(c.weight), xi = to_host(c.law.yield), gap = to_host(c.gap),
                H = to_host(c.law.hardening), compliance = to_host(c.law.compliance),
-               lambda = to_host(iterate.multipliers().normal);
+               lambda = to_host(iterate.duals().multipliers().normal);
     const auto node = to_host(c.node);
     const auto n = to_host(c.normal);
     const auto fixed = to_host(c.fixed);
@@ -159,7 +159,7 @@ TEST(OtherFoundations, ActiveSetMovesClosingPointsOntoTheCompressedSpring)
   const auto &c = iterate.points();
   const auto node = to_host(c.node);
   const auto free_gap = to_host(c.free_gap), compliance = to_host(c.law.compliance), xi = to_host(c.law.yield),
-             lambda = to_host(iterate.multipliers().normal);
+             lambda = to_host(iterate.duals().multipliers().normal);
   const auto n = to_host(c.direction);
   const auto fixed = to_host(c.fixed);
   const auto x = moved->getLocalViewHost(Tpetra::Access::ReadOnly), old = u->getLocalViewHost(Tpetra::Access::ReadOnly);

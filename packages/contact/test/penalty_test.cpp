@@ -46,7 +46,7 @@ void expect_penalties(const Scene &scene, const Expected &expected)
   const auto &c = scene.iterate->points();
   const auto coords = to_host(scene.d.mesh->coords);
   const auto node = to_host(c.node);
-  const auto penalty = to_host(scene.iterate->penalty());
+  const auto penalty = to_host(scene.iterate->duals().penalty());
   for (int side = 0; side < c.num_sides(); ++side) {
     for (LO i = c.first(side); i < c.first(side + 1); ++i) {
       const Point x{coords(node(i), 0), coords(node(i), 1), 0};
@@ -105,9 +105,9 @@ TEST(Penalty, TooWeakForFrictionIsThatOfItsOwnChoice)
   for (const double given : {1e-3, 9e4 * own, 2e5 * own, 2e7 * own}) {
     const Scene scene(std::vector{touching(given)});
     const bool weak = given < 1e5 * own;
-    EXPECT_EQ(scene.iterate->raise_weak_penalty(), weak ? scene.iterate->points().num_total : 0);
+    EXPECT_EQ(scene.iterate->duals().raise_weak_penalties(), weak ? scene.iterate->points().num_total : 0);
     expect_penalties(scene, [&](int, const Point &) { return weak ? 1e5 * own : given; });
-    EXPECT_EQ(scene.iterate->raise_weak_penalty(), 0);
+    EXPECT_EQ(scene.iterate->duals().raise_weak_penalties(), 0);
   }
 }
 
@@ -161,8 +161,8 @@ TEST(Penalty, RaisedIsInTheGradientEvenAfterTheOriginHasMoved)
   ASSERT_TRUE(iterate.raise_penalty(*scene.vector(0, 0)));
   const double r = 1e5 * own_stiffness();
   u = scene.vector([&](const Point &) { return Point{0, -1 / r, 0}; }); // presses lambda + r v from 1.5 to 2.5
-  iterate.update_multipliers(*u);
-  const auto lambda = to_host(iterate.multipliers().normal);
+  iterate.duals().update(*u);
+  const auto lambda = to_host(iterate.duals().multipliers().normal);
   for (std::size_t i = 0; i < lambda.extent(0); ++i) EXPECT_NEAR(lambda(i), 2.5, 1e-12);
 }
 

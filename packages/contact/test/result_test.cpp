@@ -31,8 +31,8 @@ struct Solved {
 
   Solved()
   {
-    for (int k = 0; k < 20; ++k) scene.iterate->update_multipliers(*u); // nodes go open or to their limit
-    scene.iterate->update_multipliers(*scene.vector(0.02, 2));          // and some of them come back
+    for (int k = 0; k < 20; ++k) scene.iterate->duals().update(*u); // nodes go open or to their limit
+    scene.iterate->duals().update(*scene.vector(0.02, 2));          // and some of them come back
     const auto &mesh = *scene.d.mesh;
     result = contact::contact_result(scene.d, {&mesh.side("bottom", "test"), &mesh.side("right", "test")},
                                      scene.iterate->points(), judged_at(*scene.iterate, *u));
@@ -58,7 +58,7 @@ TEST(ContactResult, FieldsFollowFromDisplacementAndPressureAtEachPoint)
   const auto gap = to_host(c.gap), yield = to_host(c.law.yield);
   const auto n = to_host(c.normal);
   const auto u_nu = to_host(solved.result.normal_displacement), v = to_host(solved.result.penetration);
-  const auto p = to_host(solved.result.pressure), lambda = to_host(solved.scene.iterate->multipliers().normal);
+  const auto p = to_host(solved.result.pressure), lambda = to_host(solved.scene.iterate->duals().multipliers().normal);
   const auto fixed = to_host(c.fixed);
   const auto state = to_host(solved.result.state);
   const auto u = solved.u->getLocalViewHost(Tpetra::Access::ReadOnly);
@@ -261,7 +261,7 @@ struct SolvedOnDents {
         fem::eliminate_dirichlet(scene.d, fem::assemble_stiffness(scene.d, scene.material), problem.dirichlet.fixed);
     scene.iterate = std::make_shared<contact::Iterate>(problem, nodes, test::updated(K.matrix, nodes));
     u = scene.vector(0.08, 3.1);
-    for (int k = 0; k < 400; ++k) scene.iterate->update_multipliers(*u); // to the law, at this u
+    for (int k = 0; k < 400; ++k) scene.iterate->duals().update(*u); // to the law, at this u
     const auto &mesh = *scene.d.mesh;
     result = contact::contact_result(scene.d, {&mesh.side("bottom", "test"), &mesh.side("right", "test")},
                                      scene.iterate->points(), judged_at(*scene.iterate, *u));

@@ -19,7 +19,7 @@ TEST(SmoothedFunctional, GradientIsTheDerivativeOfTheValue)
 {
   const Scene scene;
   const auto u = scene.vector(0.05, 0.4), d = scene.vector(1, 2);
-  const auto states = scene.iterate->count_states(*u);
+  const auto states = scene.iterate->functional().count_states(*u);
   ASSERT_GT(states.open, 0); // all three pieces take part
   ASSERT_GT(states.closed, 0);
   ASSERT_GT(states.yielding, 0);
@@ -118,7 +118,7 @@ TEST(SmoothedFunctional, HessianOfANodeOfTwoSidesIsTheDerivativeInEachOfItsState
 TEST(SmoothedFunctional, StatesCountThePointsOfBothSides)
 {
   const Scene scene(std::vector{below(40), beside(25)});
-  const auto states = scene.iterate->count_states(*scene.vector(0.05, 0.4));
+  const auto states = scene.iterate->functional().count_states(*scene.vector(0.05, 0.4));
   EXPECT_EQ(states.open + states.closed + states.yielding, 7 + 3); // the held point at (2, 1) is in none
   EXPECT_EQ(scene.iterate->points().num_total, 7 + 4);
   EXPECT_EQ(scene.iterate->points().num_fixed, 1);
@@ -156,9 +156,9 @@ TEST(SmoothedFunctional, AcrossAKinkTheGradientIsContinuousAndATaylorStepMissesA
       return G.norm2();
     };
     EXPECT_LT(change(2 * distance).norm2(), 2.1 * distance * Hd.norm2()); // no jump
-    const auto before = iterate.count_states(*u);
+    const auto before = iterate.functional().count_states(*u);
     for (const double h : {0.02, 0.01, 0.005}) {
-      const auto after = iterate.count_states(*plus(*u, h, *d));
+      const auto after = iterate.functional().count_states(*plus(*u, h, *d));
       EXPECT_EQ(after.closed, before.closed - 1) << h;
       EXPECT_EQ(after.open, before.open + (upwards > 0 ? 1 : 0)) << h;
       EXPECT_EQ(after.yielding, before.yielding + (upwards > 0 ? 0 : 1)) << h;
@@ -261,13 +261,13 @@ TEST(SmoothedFunctional, MultiplierUpdateIsTheSmoothedPressureAndStaysWithinLimi
   const Scene scene;
   auto &iterate = *scene.iterate;
   const auto u = scene.vector(0.05, 0.4);
-  const auto before = to_host(iterate.multipliers().normal);
+  const auto before = to_host(iterate.duals().multipliers().normal);
   HostView<double *> old("old", before.extent(0));
   Kokkos::deep_copy(old, before);
-  const double change = iterate.update_multipliers(*u);
+  const double change = iterate.duals().update(*u);
   EXPECT_GT(change, 0);
   EXPECT_LE(change, 1);
-  const auto now = to_host(iterate.multipliers().normal);
+  const auto now = to_host(iterate.duals().multipliers().normal);
   const auto &c = iterate.points();
   const auto yield = to_host(c.law.yield), gap = to_host(c.gap);
   const auto node = to_host(c.node);
@@ -283,7 +283,7 @@ TEST(SmoothedFunctional, EnergiesAndResidualsDoNotDependOnTheNumberOfRanks)
   const Scene scene;
   auto &iterate = *scene.iterate;
   const auto u = scene.vector(0.05, 0.4);
-  iterate.update_multipliers(*u);
+  iterate.duals().update(*u);
   // Values of one rank, to be met by all.
   EXPECT_NEAR(iterate.value(*u), 0.41911329126094887, 1e-13);
   EXPECT_NEAR(energy(iterate, scene.elastic, *u), 0.41226150411482143, 1e-13);
@@ -292,7 +292,7 @@ TEST(SmoothedFunctional, EnergiesAndResidualsDoNotDependOnTheNumberOfRanks)
   const Vector contact = multiplier_forces(iterate);
   residual.update(1., contact, -1., *scene.elastic.load, 1.);
   EXPECT_NEAR(residual.norm2() / std::max(iterate.force_scale(), contact.norm2()), 3.4491199932704339, 1e-12);
-  const auto states = iterate.count_states(*u);
+  const auto states = iterate.functional().count_states(*u);
   EXPECT_EQ(states.open + states.closed + states.yielding, 7);
 }
 
@@ -301,9 +301,9 @@ TEST(SmoothedFunctional, ContactLawResidualVanishesExactlyForPairsThatObeyTheLaw
   const Scene scene;
   auto &iterate = *scene.iterate;
   const auto u = scene.vector(0.05, 0.4);
-  for (int k = 0; k < 200; ++k) iterate.update_multipliers(*u); // at a fixed u: lambda goes to 0 or xi, where v says so
+  for (int k = 0; k < 200; ++k) iterate.duals().update(*u); // at a fixed u: lambda goes to 0 or xi, where v says so
   EXPECT_LT(contact_law_residual(iterate, *u), 1e-14);
-  iterate.update_multipliers(*scene.vector(0.05, 3.4));
+  iterate.duals().update(*scene.vector(0.05, 3.4));
   EXPECT_GT(contact_law_residual(iterate, *u), 1e-3);
 }
 
@@ -360,7 +360,8 @@ TEST(SmoothedFunctional, PiecesOfFrictionDifferByWhatSticks)
   EXPECT_EQ(scene.iterate->functional().count_sticking(*still), scene.iterate->points().num_total);
   EXPECT_LT(scene.iterate->functional().count_sticking(*moved), scene.iterate->points().num_total);
   EXPECT_GT(scene.iterate->functional().count_sticking(*moved), 0);
-  EXPECT_EQ(scene.iterate->count_states(*still).open, scene.iterate->count_states(*moved).open);
+  EXPECT_EQ(scene.iterate->functional().count_states(*still).open,
+            scene.iterate->functional().count_states(*moved).open);
   EXPECT_NE(scene.iterate->piece(*still), scene.iterate->piece(*moved));
 }
 

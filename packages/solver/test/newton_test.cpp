@@ -74,7 +74,7 @@ TEST(Newton, FullStepsCycleWhereExactStepsConverge)
     full_steps.max_iterations = 30;
     std::vector<std::array<GO, 3>> states;
     const auto record = [&](const solver::NewtonStep &, const Vector &u) {
-      const auto counts = full.iterate->count_states(u);
+      const auto counts = full.iterate->functional().count_states(u);
       states.push_back({counts.open, counts.closed, counts.yielding});
     };
     solver::MinimizeResult with_full, with_exact;
@@ -83,12 +83,12 @@ TEST(Newton, FullStepsCycleWhereExactStepsConverge)
       if (uzawa == 0 || with_full.converged) {
         states.clear();
         with_full = minimize(full, full_steps, nullptr, record);
-        full.iterate->update_multipliers(*full.u);
+        full.iterate->duals().update(*full.u);
       }
       with_exact = minimize(exact);
       EXPECT_TRUE(with_exact.converged) << with_exact.reason;
       EXPECT_LE(with_exact.steps, 12);
-      exact.iterate->update_multipliers(*exact.u);
+      exact.iterate->duals().update(*exact.u);
     }
     EXPECT_FALSE(with_full.converged);
     EXPECT_EQ(with_full.steps, 30);
@@ -118,8 +118,8 @@ TEST(Newton, LineSearchesOfNoxLowerTheFunctional)
       minimize(exact);
       const double least = exact.iterate->value(*exact.u);
       EXPECT_NEAR(beam.iterate->value(*beam.u), least, 1e-10 * std::abs(least)) << method;
-      beam.iterate->update_multipliers(*beam.u);
-      exact.iterate->update_multipliers(*exact.u);
+      beam.iterate->duals().update(*beam.u);
+      exact.iterate->duals().update(*exact.u);
     }
   }
 }
@@ -136,7 +136,7 @@ TEST(Newton, ALineSearchThatFindsNothingIsTheReason)
   for (int uzawa = 0; uzawa < 4; ++uzawa) {
     result = minimize(beam, options);
     if (!result.converged) break;
-    beam.iterate->update_multipliers(*beam.u);
+    beam.iterate->duals().update(*beam.u);
   }
   EXPECT_FALSE(result.converged);
   for (const char *const part :

@@ -79,7 +79,7 @@ TEST(InSpace, GradientIsTheDerivativeOfTheFunctional)
 {
   const Block block;
   const auto u = block.vector(0.05, 0.4), d = block.vector(1, 2);
-  expect_all_states(block.iterate->count_states(*u));
+  expect_all_states(block.iterate->functional().count_states(*u));
   Vector F(u->getMap());
   block.iterate->gradient(*u, F);
   const double difference =

@@ -77,7 +77,7 @@ Status ActiveSetLoop::begin(MinimizationSteps &steps)
 {
   const Vector &u = solver::tpetra(steps.at().getX());
   start_.assign(u);
-  start_dual_ = iterate_.dual();
+  start_dual_ = iterate_.duals().values();
   if (make_coarse_ || !predicted_ || *predicted_ < FoundBy::newton) return judge(steps);
   if (*predicted_ == FoundBy::newton)
     method_ = Method::newton_from_start;
@@ -173,7 +173,7 @@ void ActiveSetLoop::take_over(const Vector &u, const int most)
 {
   iterate_.update_hessian(u); // the states there
   start_.assign(u);
-  start_dual_ = iterate_.dual();
+  start_dual_ = iterate_.duals().values();
   start_over({}, most);
   updates_ = 0;
 }
@@ -315,7 +315,7 @@ void ActiveSetLoop::back_to_start(MinimizationSteps &steps)
   method_ = Method::newton;
   newton_ = {};
   newton_was_tried_ = true;
-  iterate_.take_dual(start_dual_);
+  iterate_.duals().take(start_dual_);
   steps.move_to(rcp(new Vector(start_, Teuchos::Copy)));
 }
 
@@ -353,7 +353,7 @@ Status ActiveSetLoop::step_to_choice(MinimizationSteps &steps)
   if (!rough_) { // the remaining correction is small against u: solving for it keeps its relative accuracy       (5.13)
     iterate_.move_origin(*u);
     start_.putScalar(0);
-    start_dual_ = iterate_.dual();
+    start_dual_ = iterate_.duals().values();
     steps.move_to(u);
   }
   u = Teuchos::null; // a solve needs the memory
@@ -362,7 +362,7 @@ Status ActiveSetLoop::step_to_choice(MinimizationSteps &steps)
   const auto solved = solver::solve_for_direction(steps.context(), F, *direction, wanted()); // (5.9)
   if (!solved.converged) { // an active set that leaves the body unheld, or an interrupt
     if (!solved.interrupted) {
-      iterate_.reset_multipliers();
+      iterate_.duals().reset();
       steps.move_to(rcp(new Vector(start_, Teuchos::Copy)));
     }
     return leave_to_newton(steps);

@@ -27,6 +27,7 @@
 namespace rpc::analysis
 {
 
+using contact::DualVariables;
 using contact::Iterate;
 
 namespace
@@ -34,8 +35,8 @@ namespace
 
 /// How the minimization before has ended.
 struct LastMinimum {
-  bool confirmed = false; ///< its active set was
-  Iterate::Dual dual;     ///< with friction: what it had, before pressures became multipliers
+  bool confirmed = false;     ///< its active set was
+  DualVariables::Values dual; ///< with friction: what it had, before pressures became multipliers
 };
 
 Prediction predict(const Step &step, Iterate &iterate, Vector &u, const Starts &starts);
@@ -56,9 +57,9 @@ StepSolution solve_with(const Problem &problem, const Step &step, SolverState &s
   s.step = step;
   const auto u = rcp(new Vector(*step.elastic.dirichlet.value, Teuchos::Copy)); // seen from the iterate's origin
   Iterate iterate(step.elastic, step.contact, state.hessian());
-  if (step.support.by_contact_only) iterate.hold_by_contact();                           // (9.8)
-  if (step.contact.friction.anywhere) s.raised_penalties = iterate.raise_weak_penalty(); // (12.12b)
-  if (low_penalties) iterate.lower_penalty();                                            // (12.12a)
+  if (step.support.by_contact_only) iterate.hold_by_contact();                                     // (9.8)
+  if (step.contact.friction.anywhere) s.raised_penalties = iterate.duals().raise_weak_penalties(); // (12.12b)
+  if (low_penalties) iterate.duals().lower_penalties();                                            // (12.12a)
   std::optional<PredictedBy> predicted; // nothing: no coarser mesh predicts the start
   const auto counts_before = state.linear().counts();
   solver::check_nox_parameters(iterate, state.linear(), u, options.newton);
@@ -84,9 +85,9 @@ StepSolution solve_with(const Problem &problem, const Step &step, SolverState &s
           minimize(problem, iterate, u, state, options, uzawa.iterations + 1, last, predicted,
                    progress); // Newton (4.2)
       last.confirmed = found.active_set_confirmed;
-      if (step.contact.friction.anywhere) last.dual = iterate.dual();
+      if (step.contact.friction.anywhere) last.dual = iterate.duals().values();
       uzawa.multiplier_change = found.active_set_confirmed ? iterate.take_active_set_pressures(*u)
-                                                           : iterate.update_multipliers(*u); // paper (11), (5.1)
+                                                           : iterate.duals().update(*u); // paper (11), (5.1)
       s.state = iterate.state(*u);
       uzawa.residuals =
           judge(problem, step, iterate, s.state, state, options.uzawa.tolerance); // paper (8); (5.2) - (5.5)
@@ -217,19 +218,19 @@ minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options
   int steps = 0, most = options.newton.max_iterations;
   if (solver::takes_loop(options.newton)) {
     const Vector start(u, Teuchos::Copy);
-    const Iterate::Dual dual = iterate.dual();
+    const DualVariables::Values dual = iterate.duals().values();
     // With pressures for multipliers r v counts twice, and v may turn its sign at each update. Active sets converge from the multipliers before
     // as a rule, and at times only from the pressures: in turn.
-    if (!last.confirmed && iteration % 2 == 0) iterate.take_dual(last.dual);
+    if (!last.confirmed && iteration % 2 == 0) iterate.duals().take(last.dual);
     ActiveSetLoop choices(iterate, active_set_tolerances(options), ActiveSetLoop::Then::nothing);
     const auto tried = run(std::ref(choices), most);
     if (choices.confirmed()) return {tried.converged, tried.steps, tried.reason, true};
     steps = tried.steps;
     u.assign(start);
-    iterate.take_dual(dual);
+    iterate.duals().take(dual);
     most = std::min<int>(most, solver::newton_rules.most_inner_steps);
   }
-  iterate.follow_bounds();
+  iterate.duals().follow_bounds();
   auto result = run({}, most);
   if (result.steps == most && most < options.newton.max_iterations)
     result.reason.clear(); // the bound is not the deck's
@@ -246,7 +247,8 @@ Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector
     newton.max_iterations = most_steps;
     return solver::minimize(iterate, state.linear(), u, iterate.force_scale(), newton, loop,
                             [&](const solver::NewtonStep &newton, const Vector &at) {
-                              if (progress.newton) progress.newton(iteration, newton, iterate.count_states(at));
+                              if (progress.newton)
+                                progress.newton(iteration, newton, iterate.functional().count_states(at));
                             });
   };
   const bool friction = iterate.points().friction.anywhere;

@@ -96,7 +96,7 @@ private:
   double most_overshoot_;                          // of forces, before choices end
   std::optional<contact::ActiveSetChoice> choice_; // at the present point
   Vector start_;                                   // to go back to, with
-  contact::Iterate::Dual start_dual_;              // its multipliers
+  contact::DualVariables::Values start_dual_;      // its multipliers
   bool rough_;                                     // solves are, while the active set changes
   bool rubs_;                                      // there is friction
   bool turns_ = false;                             // and in space: the branches of an active set are not linear

@@ -3,8 +3,8 @@
 
 #include "rpc/algebra/updated_operator.hpp"
 #include "rpc/contact/active_set.hpp"
+#include "rpc/contact/dual_variables.hpp"
 #include "rpc/contact/interior_path.hpp"
-#include "rpc/contact/lagged_bounds.hpp"
 
 #include <vector>
 
@@ -64,7 +64,6 @@ public:
     functional_.active_set_gradient(active_, u, gradient, F);
   }
   double pressure_error(const Vector &u) const { return contact::pressure_error(functional_, active_, u, own_); }
-  StateCounts count_states(const Vector &u) const { return functional_.count_states(u); }
   /// For bodies with rigid motions that only contact can hold: keeps a weak spring at nodes that are not closed in
   /// hessian(), so that it stays positive definite, and closes all nodes in the first active set, unless
   /// multipliers were given. The functional and its gradients do not change. (9.8)
@@ -73,33 +72,14 @@ public:
   /// The interior-point method from u on, by hessian(). It refers to this object.                                 (5.16)
   InteriorPath interior_path(const Vector &u) const;
 
-  // Multipliers and penalties.
-  /// lambda_i <- Psi_i'(v_i(u)). @return |change|_2 / |lambda|_2, over free contact nodes, 0 if nothing changed   paper (11), (5.1)
-  double update_multipliers(const Vector &u);
-  /// The same with the pressures of a confirmed active set, as near as the law admits them: the penalty r does not amplify the
-  /// rounding of v at open and yielding points.
-  double take_active_set_pressures(const Vector &u);
-  /// Back to the multipliers of the start: xi/2 where the body touches, else 0.
-  void reset_multipliers();
-  /// Raises the penalties, as far as double precision bears it. @return whether any rose, on any rank             (5.12)
+  // Multipliers, friction's bounds and penalties.
+  const DualVariables &duals() const { return duals_; }
+  DualVariables &duals() { return duals_; }
+  /// See DualVariables.
+  double take_active_set_pressures(const Vector &u) { return duals_.take_active_set_pressures(active_, u); }
+  /// Raises the penalties, and hessian() follows. @return whether any rose, on any rank                              (5.12)
   /// @param u  where the active set was taken
   bool raise_penalty(const Vector &u);
-
-  /// Raises those that are weaker than those of no choice of the deck's, before the first minimization. @return at how many points   (12.12b)
-  GO raise_weak_penalty();
-  /// Lowers them to E / diameter, before the first minimization.                                                (12.12a)
-  void lower_penalty();
-
-  // Friction's bounds, where no active set is confirmed: Tresca problems, one after another.                   (12.12)
-  /// Multipliers and bounds of the functional that is minimized.
-  struct Dual {
-    Multipliers multiplier;
-    DeviceView<double *> bound; ///< (points) [Pa]
-  };
-  Dual dual() const;
-  void take_dual(const Dual &dual);
-  /// Takes the bounds of the next Tresca problem, from those of the last ones and what their pressures gave. Collective.
-  void follow_bounds();
 
   // Origin and state.
   /// Starts from a state, such as that of the step before or another mesh's: takes its multipliers, as near as the law admits them.
@@ -120,34 +100,26 @@ public:
   /// |Ku - b + sum_i w_i lambda_i m_i|_2 over the free unknowns [N]: how far u and the multipliers are from equilibrium.
   double out_of_balance(const Vector &u) const;
 
-  const ContactNodes &points() const { return points_; } ///< with penetration from 0
-  const Multipliers &multipliers() const { return functional_.points().multiplier; }
-  const DeviceView<double *> &penalty() const { return functional_.points().penalty; } ///< (points) [Pa/m]
-  const DeviceView<double *> &own_stiffness() const { return own_; }                   ///< (points) [Pa/m]
+  const ContactNodes &points() const { return points_; }             ///< with penetration from 0
+  const DeviceView<double *> &own_stiffness() const { return own_; } ///< (points) [Pa/m]
 
 private:
   void take_origin(Vector &u, const Vector &out_of_balance);
   RCP<Vector> from_rest(const Vector &u) const; // the displacement from 0
   GO update_stiffness(const Vector &u); // brings hessian() to the active set; number of nodes whose stiffness changed
-  double replace_multipliers(const DeviceView<double *> &p, const DeviceView<double **> &q);
 
   fem::DirichletDofs dirichlet_;
   ContactNodes points_;
   RCP<UpdatedOperator> hessian_;
   DeviceView<double *> own_, coupled_; // (points) see own_stiffness(), coupled_stiffness()
   SmoothedFunctional functional_;
-  RCP<Vector> origin_;             // null: 0
-  double applied_force_ = 0;       // |applied load|_2 on free unknowns [N]
-  double prescribed_force_ = 0;    // the same with the forces of prescribed displacements [N]
-  double weight_ = 0;              // of the free points: their area [m^2], in 2D per m
-  double start_pressure_ = 0;      // mean of the multipliers that a start gave [Pa]
-  double pressure_bound_ = 0;      // pressure that the load will hardly reach anywhere [Pa]
-  RCP<const TiedStiffness> tied_;  // null: no force moves a side
-  ActiveSet active_;               // that hessian() belongs to
-  double spring_ = 0;              // weak springs at nodes that are not closed, in units of the points' scaling
-  bool multipliers_given_ = false; // by a start
-  LaggedBounds lagged_;
-  DeviceView<double *> bounds_before_; // (points) of the last minimization [Pa]; empty: no problem had them given
+  DualVariables duals_;           // of the functional
+  double applied_force_;          // |applied load|_2 on free unknowns [N]
+  double prescribed_force_;       // the same with the forces of prescribed displacements [N]
+  RCP<Vector> origin_;            // null: 0
+  RCP<const TiedStiffness> tied_; // null: no force moves a side
+  ActiveSet active_;              // that hessian() belongs to
+  double spring_ = 0;             // weak springs at nodes that are not closed, in units of the points' scaling
 };
 
 } // namespace rpc::contact
