@@ -208,12 +208,52 @@ int refine(const Iterate &iterate, Vector &u, SolverState &state)
   return 1;
 }
 
+/// A minimization by a loop, of so many steps at most.
+using Run = std::function<solver::MinimizeResult(const solver::MinimizationLoop &, int most_steps)>;
+
+/// Chooses states and solves, or goes on with another method where that makes no progress: see ActiveSetLoop.
+Minimization minimize_by_choices(const Problem &problem, Iterate &iterate, const StepOptions &options,
+                                 const std::optional<PredictedBy> &predicted, const Run &run)
+{
+  ActiveSetTolerances tolerances = active_set_tolerances(options);
+  tolerances.nearly_incompressible = is_nearly_incompressible(problem.discretization(), problem.model().materials);
+  ActiveSetLoop loop(iterate, tolerances);
+  if (predicted) loop.starts_predicted(predicted->found_by, predicted->coarse_choice);
+  const auto result = run(std::ref(loop), options.newton.max_iterations);
+  return {result.converged,
+          result.steps,
+          result.reason,
+          loop.confirmed(),
+          result.newton_steps,
+          loop.coarse_choices(),
+          iterate.points().friction.anywhere && !loop.confirmed(),
+          loop.found_by()};
+}
+
+/// From the states of the last minimization; with friction by one step, after which choices go on, not the functional.
+/// @param[out] in_vain  steps that were taken back
+/// @return none if friction changes states: u is where it was
+std::optional<Minimization> minimize_for_same_states(Iterate &iterate, Vector &u, SolverState &state,
+                                                     const StepOptions &options, const Run &run, int &in_vain)
+{
+  const bool friction = iterate.points().friction.anywhere;
+  const Vector start(u, friction ? Teuchos::Copy : Teuchos::View);
+  const auto result =
+      run([&](solver::MinimizationSteps &steps) { return minimize_from_same_active_set(iterate, steps); },
+          friction ? 1 : options.newton.max_iterations);
+  if (friction && !(result.converged && result.newton_steps == 0)) {
+    if (result.newton_steps > 0) u.assign(start);
+    in_vain = result.steps;
+    return std::nullopt;
+  }
+  const int steps = result.steps == 0 && result.converged ? refine(iterate, u, state) : result.steps;
+  return Minimization{result.converged, steps, result.reason, false, result.newton_steps};
+}
+
 /// Where friction's states were not confirmed: coupled active-set updates once more, from the end of the last Tresca problem; if these do
 /// not converge within a few steps, the Tresca problem with the next bounds. (12.12)
-Minimization
-minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options, const int iteration,
-                         const LastMinimum &last,
-                         const std::function<solver::MinimizeResult(const solver::MinimizationLoop &, int)> &run)
+Minimization minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options, const int iteration,
+                                      const LastMinimum &last, const Run &run)
 {
   int steps = 0, most = options.newton.max_iterations;
   if (solver::takes_loop(options.newton)) {
@@ -241,8 +281,7 @@ Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector
                       const StepOptions &options, const int iteration, const LastMinimum &last,
                       const std::optional<PredictedBy> &predicted, const Progress &progress)
 {
-  const int all = options.newton.max_iterations;
-  const auto run = [&](const solver::MinimizationLoop &loop, const int most_steps) {
+  const Run run = [&](const solver::MinimizationLoop &loop, const int most_steps) {
     solver::NewtonOptions newton = options.newton;
     newton.max_iterations = most_steps;
     return solver::minimize(iterate, state.linear(), u, iterate.force_scale(), newton, loop,
@@ -251,39 +290,13 @@ Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector
                                 progress.newton(iteration, newton, iterate.functional().count_states(at));
                             });
   };
-  const bool friction = iterate.points().friction.anywhere;
+  if (iteration == 1) return minimize_by_choices(problem, iterate, options, predicted, run);
   int in_vain = 0;
-  if (iteration > 1 && (!friction || last.confirmed)) {
-    const Vector start(*u, friction ? Teuchos::Copy : Teuchos::View);
-    const auto result =
-        run([&](solver::MinimizationSteps &steps) { return minimize_from_same_active_set(iterate, steps); },
-            friction ? 1 : all);
-    if (friction && !(result.converged && result.newton_steps == 0)) { // choices go on, not the functional
-      if (result.newton_steps > 0) u->assign(start);
-      in_vain = result.steps;
-    } else {
-      const int steps = result.steps == 0 && result.converged ? refine(iterate, *u, state) : result.steps;
-      return {result.converged, steps, result.reason, false, result.newton_steps};
-    }
-  }
-  if (iteration > 1) {
-    Minimization found = minimize_for_next_bounds(iterate, *u, options, iteration, last, run);
-    found.steps += in_vain;
-    return found;
-  }
-  ActiveSetTolerances tolerances = active_set_tolerances(options);
-  tolerances.nearly_incompressible = is_nearly_incompressible(problem.discretization(), problem.model().materials);
-  ActiveSetLoop loop(iterate, tolerances);
-  if (predicted) loop.starts_predicted(predicted->found_by, predicted->coarse_choice);
-  const auto result = run(std::ref(loop), all);
-  return {result.converged,
-          result.steps,
-          result.reason,
-          loop.confirmed(),
-          result.newton_steps,
-          loop.coarse_choices(),
-          friction && !loop.confirmed(),
-          loop.found_by()};
+  if (!iterate.points().friction.anywhere || last.confirmed)
+    if (auto found = minimize_for_same_states(iterate, *u, state, options, run, in_vain)) return *std::move(found);
+  Minimization found = minimize_for_next_bounds(iterate, *u, options, iteration, last, run);
+  found.steps += in_vain;
+  return found;
 }
 
 /// The residual that an iteration's is compared with: the last one, or one of some iterations ago where bounds follow the pressures, for
