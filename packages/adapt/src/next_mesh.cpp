@@ -45,8 +45,8 @@ long long two_digits(const double value)
 double MeshPlanner::made_per_planned(const double cells, const int dim) const
 {
   if (predicted_cells_ > 0) return cells / predicted_cells_;
-  if (!nests(task_.mesh, task_.adapt)) return dim == 2 ? 1. : plan_rules.excess_in_space;
-  return dim == 2 ? plan_rules.excess_nested_in_plane : plan_rules.excess_nested;
+  if (!nests(task_.mesh, task_.adapt)) return dim == 2 ? 1. : plan_rules.excess;
+  return dim == 2 ? plan_rules.excess : plan_rules.excess_nested;
 }
 
 /// @param eta, target  estimates, of the present mesh and of the last one [J^(1/2)]

@@ -126,7 +126,7 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   const Energies energies_before = kept_.memory ? kept_.memory->energies : Energies{};
   StepSolution s;
   double tolerance = energy_tolerance_;
-  Headway attempts({step_rules.helpful, 0, Headway::unlimited, step_rules.most_attempts - 1});
+  Headway attempts({headway_rules.falls, 0, Headway::unlimited, step_rules.most_attempts - 1});
   while (true) {
     last_.parts = 0; // counted as they are solved
     last_.from_rest = false;
@@ -317,7 +317,7 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
   std::optional<StepSolution> searched; // what the searches before have taken
   Point way_before{};
   Headway searches({1, Headway::unlimited, Headway::unlimited, step_rules.most_searches - 1});
-  Headway ways({step_rules.helpful, Headway::unlimited, step_rules.most_searches - 1}); // of the obstacle, which fall
+  Headway ways({headway_rules.falls, Headway::unlimited, step_rules.most_searches - 1}); // of the obstacle, which fall
   while (true) {
     const bool is_rough = !searched && bends(model);
     starts.may_rest = by_force && !is_rough && !on_foundation;

@@ -38,7 +38,7 @@ ActiveSetLoop::ActiveSetLoop(contact::Iterate &iterate, const ActiveSetTolerance
       start_(iterate.hessian()->getDomainMap()),
       rough_(iterate.points().num_total > iterate.points().num_fixed), // else there is no state to choose
       rubs_(iterate_.points().friction.anywhere), then_(then), headway_(within(choice_rules.most_idle)),
-      confirmed_headway_({choice_rules.idle_residual, 0}), trial_gap_(path_rules.first_trial)
+      confirmed_headway_({choice_rules.idle_residual, 0}), trial_gap_(path_rules.trial)
 {
   if (!rubs_) return;
   path_ = Path::behind; // it knows no friction

@@ -19,7 +19,7 @@ bool ActiveSetLoop::leaves_path()
   const bool ends = path.gap() <= path_rules.last_gap || path_steps_ >= solver::newton_rules.most_inner_steps;
   if (!ends && !(path.settled() && path.gap() <= trial_gap_)) return false;
   if (ends) path_ = Path::behind;
-  trial_gap_ = path_rules.next_trial * path.gap();
+  trial_gap_ = path_rules.trial * path.gap();
   start_over(path.choice(), path_rules.trial_changes); // (5.20)
   return true;
 }

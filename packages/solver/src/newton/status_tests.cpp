@@ -3,6 +3,7 @@
 
 #include "rpc/core/headway.hpp"
 #include "rpc/core/interrupt.hpp"
+#include "rpc/core/rules.hpp"
 #include "rpc/solver/rules.hpp"
 
 #include <NOX.H>
@@ -71,7 +72,7 @@ public:
 private:
   RCP<NewtonContext> context_;
   std::uint64_t piece_ = 0;
-  Headway headway_{{newton_rules.falls, newton_rules.most_idle - 1}}; // of residuals, since the piece last changed
+  Headway headway_{{headway_rules.falls, newton_rules.most_idle - 1}}; // of residuals, since the piece last changed
   NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
 };
 

@@ -41,12 +41,11 @@ struct PlanRules {
                        "not measured"};
   // Coarse meshes cannot be as coarse as they may, for the body's edges; nested ones are no coarser than the first one, and neighbours of
   // small cells are halved.
-  Rule<double> excess_in_space{2, "plan.excess_in_space", "cells made for a planned one in space, a guess [-]; off: 1",
-                               "not measured"};
+  Rule<double> excess{2, "plan.excess",
+                      "cells made for a planned one in space, and of nested meshes in the plane, a guess [-]; off: 1",
+                      "not measured"};
   Rule<double> excess_nested{3.2, "plan.excess_nested", "the same of nested meshes in space [-]; off: 1",
                              "not measured"};
-  Rule<double> excess_nested_in_plane{2, "plan.excess_nested_in_plane", "the same in the plane [-]; off: 1",
-                                      "not measured"};
   // gmsh makes cells of twice the size, which are halved: an eighth of its time, and multigrid has a mesh more. Halved meshes of fewer cells
   // could not be as coarse. In the plane gmsh is fast enough, and finer gradings pay.
   Rule<double> least_halved{6000, "plan.least_halved",

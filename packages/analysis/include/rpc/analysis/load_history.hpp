@@ -6,6 +6,7 @@
 #include "rpc/analysis/rules.hpp"
 #include "rpc/analysis/solve_step.hpp"
 #include "rpc/core/headway.hpp"
+#include "rpc/core/rules.hpp"
 #include "rpc/fem/peaks.hpp"
 
 #include <functional>
@@ -122,7 +123,7 @@ private:
     int failures, balance, all;
     double tolerance; // of a part's energy balance
     Headway headway{
-        {step_rules.helpful, step_rules.most_attempts}}; // of what the parts around this one miss of the balance [J]
+        {headway_rules.falls, step_rules.most_attempts}}; // of what the parts around this one miss of the balance [J]
   };
   struct Offered {
     contact::ContactState start;

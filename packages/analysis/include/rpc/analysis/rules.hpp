@@ -81,8 +81,8 @@ struct PathRules {
   Rule<int> most_centerings{2, "path.most_centerings", "corrections that centre a step (5.19a) [-]", "not measured"};
   Rule<double> long_enough{0.9, "path.long_enough", "length from which a step is not centred [-]", "not measured"};
   Rule<double> least_gain{0.03, "path.least_gain", "length gained from which a step is centred once more [-]", "not measured"};
-  Rule<double> first_trial{1e-2, "path.first_trial", "complementarity gap, relative, below which settled states are tried [-]", "not measured"};
-  Rule<double> next_trial{1e-2, "path.next_trial", "the same after a trial, over the gap of that [-]", "not measured"};
+  Rule<double> trial{1e-2, "path.trial",
+                     "complementarity gap, relative, below which settled states are tried; then over the gap of the last trial [-]", "not measured"};
   Rule<double> last_gap{1e-8, "path.last_gap", "gap that ends the path [-]", "not measured"};
   Rule<int> trial_changes{2, "path.trial_changes", "choices without progress from tried states [-]", "not measured"};
   Rule<double> model_gap{3e-6, "path.model_gap", "gap that ends the path on the coarser mesh [-]", "not measured"};
@@ -105,8 +105,6 @@ struct StepRules {
   // Load steps
   Rule<int> most_searches{8, "step.most_searches", "solves for the dents that points meet [-]", "two to four are needed"};
   Rule<double> dents_settled{1e-7, "step.dents_settled", "change of dents over the deepest that ends them [-]", "not measured"};
-  Rule<double> helpful{0.9, "step.helpful",
-                       "energy missed by a half over that of the whole; above, halving is in vain [-]", "not measured"};
   Rule<int> most_attempts{5, "step.most_attempts",
  "halvings in vain in a row; attempts at a step, each with a lower tolerance of its parts [-]", "not measured"};
   Rule<double> part_of_tolerance{0.5, "step.part_of_tolerance", "of the tolerance that the parts of the next attempt aim at [-]", "not measured"};

@@ -189,7 +189,6 @@ struct NewtonRules {
                              "measurements.md, 2026-11-30: no bound from 20 to 50 was met"};
   Rule<int> most_halvings{10, "newton.most_halvings",
                           "of an interval, in the search for the pieces of a line function [-]", "not measured"};
-  Rule<double> falls{0.9, "newton.falls", "ratio of a residual that falls [-]", "not measured"};
   Rule<double> full_step{0.5, "newton.full_step", "length of a step that counts as full [-]", "not measured"};
   Rule<int> most_idle{2, "newton.most_idle", "full steps on one piece without a fall [-]", "not measured"};
 };

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "rpc/core/rule.hpp"
+
+namespace rpc
+{
+
+/// What iterations of several packages count as progress, see core/headway.hpp.
+struct HeadwayRules {
+  Rule<double> falls{
+      0.9, "headway.falls",
+      "measure over the least before that is progress: residual on one quadratic piece, energy that a half "
+      "of a step misses, way of an obstacle to its rest [-]",
+      "not measured"};
+};
+inline constexpr_rules HeadwayRules headway_rules;
+
+} // namespace rpc
