@@ -220,14 +220,9 @@ Minimization minimize_by_choices(const Problem &problem, Iterate &iterate, const
   ActiveSetLoop loop(iterate, tolerances);
   if (predicted) loop.starts_predicted(predicted->found_by, predicted->coarse_choice);
   const auto result = run(std::ref(loop), options.newton.max_iterations);
-  return {result.converged,
-          result.steps,
-          result.reason,
-          loop.confirmed(),
-          result.newton_steps,
-          loop.coarse_choices(),
-          iterate.points().friction.anywhere && !loop.confirmed(),
-          loop.found_by()};
+  const bool bounds_follow = iterate.points().friction.anywhere && !loop.confirmed();
+  return {result.converged,    result.steps,          result.reason, loop.confirmed(),
+          result.newton_steps, loop.coarse_choices(), bounds_follow, loop.found_by()};
 }
 
 /// From the states of the last minimization; with friction by one step, after which choices go on, not the functional.
