@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/bound/bound.hpp"
 
+#include "bound_parts.hpp"
 #include "boundary.hpp"
-#include "constant_field.hpp"
 #include "contact_force.hpp"
 #include "contact_terms.hpp"
 #include "descent.hpp"
-#include "galerkin.hpp"
-#include "local_terms.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/core/timed.hpp"
 #include "space_bound.hpp"
 #include "star_solves.hpp"
 
-#include <Teuchos_Time.hpp>
 #include <algorithm>
 #include <cmath>
 
@@ -58,18 +55,6 @@ CellInput cell_input(const analysis::Problem &problem, const analysis::Model &mo
   return in;
 }
 
-PointTractions tractions_of(const contact::ContactResult &contact)
-{
-  const auto pressure = to_host(contact.pressure);
-  const auto along = to_host(contact.traction);
-  PointTractions on_host{HostView<double *>("rpc::bound::pressure", pressure.extent(0)),
-                         HostView<double **>("rpc::bound::friction", along.extent(0), 2)};
-  Kokkos::deep_copy(on_host.pressure, pressure);
-  for (std::size_t i = 0; i < along.extent(0); ++i)
-    for (int d = 0; d < 2; ++d) on_host.along(i, d) = along(i, d);
-  return on_host;
-}
-
 /// The inner product, each facet counted by one rank.
 double product_over_ranks(const CellInput &in, const Comm &comm, const Tractions &x, const Tractions &y)
 {
@@ -96,19 +81,6 @@ double energy_product(const fem::Discretization &d, const fem::Materials &materi
   sum.update(scale, w, 1);
   difference.update(-scale, w, 1);
   return (squared(sum) - squared(difference)) / (4 * scale);
-}
-
-/// What contact misses in each owned cell of contact facets.
-std::vector<std::pair<LO, double>> gaps_of_cells(const CellInput &in, const std::vector<ContactFacets> &sides,
-                                                 const ContactTerms &contact)
-{
-  const auto cell = to_host(in.facets.cell);
-  std::vector<std::pair<LO, double>> gaps;
-  for (std::size_t k = 0; k < sides.size(); ++k)
-    for (std::size_t f = 0; f < sides[k].facet.size(); ++f)
-      if (sides[k].facet[f] >= 0 && cell(sides[k].facet[f], 0) < in.num_owned_cells)
-        gaps.push_back({cell(sides[k].facet[f], 0), contact.gap_of[k][f]});
-  return gaps;
 }
 
 } // namespace
@@ -169,15 +141,8 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   const Boundary boundary = boundary_of(problem, s.step, in.facets, tractions_of(s.contact));
 
   EnergyBound bound;
-  for (std::size_t k = 0; k < boundary.sides.size(); ++k)
-    if (boundary.sides[k].friction.acts) bound.of = std::max(bound.of, kind_of_friction(model.contact[k]));
-  const HostView<double *> moved = host_copy(*s.u);
-  for (std::size_t k = 0; k < boundary.sides.size(); ++k) move_out(boundary.sides[k], *d.mesh, moved);
+  const HostView<double *> moved = moved_out(problem, model, s, boundary.sides, bound);
   const RCP<const Vector> u = vector_of(moved, d.owned_dofs);
-  Vector way(*u, Teuchos::Copy);
-  way.update(-1, *s.u, 1);
-  bound.moved = std::sqrt(std::max(0., fem::internal_work(d, model.materials, way).energy_norm_squared));
-
   const ContactTerms contact = contact_terms(boundary.sides, *d.mesh, moved);
   bound.missing = contact.missing;
   const double strain = fem::internal_work(d, model.materials, *u).energy_norm_squared;
@@ -185,11 +150,7 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   bound.upper = strain / 2 - work + contact.energy;
 
   const BoundaryTractions all = with_contact(boundary.tractions, boundary.sides, contact.tractions);
-  const double start = Teuchos::Time::wallTime();
-  const Solved galerkin = galerkin_solution(problem, s, options, in, all);
-  bound.solve_seconds = Teuchos::Time::wallTime() - start;
-  bound.linear_iterations = galerkin.iterations;
-  if (!galerkin.failure.empty()) bound.missing = galerkin.failure;
+  const Solved galerkin = timed_galerkin_solution(problem, s, options, in, all, bound);
   if (!bound.missing.empty()) return bound;
 
   const FacetExchange exchange(d, in.facets);
@@ -208,23 +169,8 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   std::vector<double> falls;
   for (int step = 0; step < steps; ++step) falls.push_back(descent.step());
   const StressDifference left = stress_difference(in, comm, t, *on_overlap, of_cell);
-  bound.imbalance = left.force > 0 ? left.imbalance / left.force : 0;
-  double energy = left.energy;
-  const double stress_norm = std::sqrt(2 * energy) + lift;
-  for (int step = steps; step >= 0; --step) {
-    const double norm = std::sqrt(2 * energy) + lift;
-    bound.steps.insert(bound.steps.begin(), norm * norm / 2 + contact.gap);
-    if (step > 0) energy += falls[step - 1];
-  }
-  const double best = bound.steps.back();
-  bound.lower = bound.upper - best;
-  bound.energy_norm = std::sqrt(2 * best) + bound.moved;
-  bound.squared = local_terms(comm, of_cell, left.energy > 0 ? stress_norm * stress_norm / (2 * left.energy) : 0,
-                              gaps_of_cells(in, boundary.sides, contact), bound.energy_norm * bound.energy_norm);
-  if (!(bound.imbalance <= 1e-8)) {
-    bound.missing = "cells are out of balance by " + shown(bound.imbalance) + " of their forces";
-    return bound;
-  }
+  const double stress_norm = take_descent(comm, in, boundary.sides, contact, left, falls, lift, of_cell, bound);
+  if (!bound.missing.empty()) return bound;
   const double rho = std::sqrt(stress_norm * stress_norm / 4 + contact.gap); // (13.13)
   for (std::size_t k = 0; k < boundary.sides.size(); ++k) {
     const UnitPress press = unit_press(problem, s.step.time, boundary.sides, static_cast<int>(k), options);
@@ -244,12 +190,6 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
 }
 
 } // namespace
-
-EnergyBound::Of kind_of_friction(const contact::ContactOptions &options)
-{
-  const auto coefficient = value_everywhere(options.friction_coefficient);
-  return coefficient == 0. ? EnergyBound::Of::energy_and_friction : EnergyBound::Of::energy_and_fixed_friction;
-}
 
 const char *name_of(const EnergyBound::Of of)
 {

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "space_bound.hpp"
 
-#include "constant_field.hpp"
+#include "bound_parts.hpp"
 #include "descent.hpp"
-#include "galerkin.hpp"
-#include "local_terms.hpp"
 #include "ring_solves.hpp"
 #include "space_boundary.hpp"
 #include "space_contact_terms.hpp"
 
-#include <Teuchos_Time.hpp>
 #include <algorithm>
 #include <cmath>
 
@@ -37,32 +34,6 @@ SpaceInput space_input(const analysis::Problem &problem, const analysis::Model &
   return in;
 }
 
-/// Of a solution, on the host.
-PointTractions point_tractions(const contact::ContactResult &contact)
-{
-  const auto along = to_host(contact.traction);
-  PointTractions on_host{HostView<double *>("rpc::bound::pressure", contact.pressure.extent(0)),
-                         HostView<double **>("rpc::bound::friction", along.extent(0), 3)};
-  Kokkos::deep_copy(on_host.pressure, contact.pressure);
-  for (std::size_t i = 0; i < along.extent(0); ++i)
-    for (int d = 0; d < 3; ++d) on_host.along(i, d) = along(i, d);
-  return on_host;
-}
-
-/// What contact misses in each owned cell of contact facets.
-std::vector<std::pair<LO, double>> gaps_in_space(const SpaceInput &in, const std::vector<SpaceContact> &sides,
-                                                 const SpaceContactTerms &contact)
-{
-  const auto cell = to_host(in.facets.cell);
-  std::vector<std::pair<LO, double>> gaps;
-  for (std::size_t k = 0; k < sides.size(); ++k)
-    for (std::size_t f = 0; f < sides[k].facet.size(); ++f) {
-      const LO facet = sides[k].facet[f], at = facet < 0 ? -1 : cell(facet, 0);
-      if (at >= 0 && at < in.num_owned_cells) gaps.push_back({at, contact.gap_of[k][f]});
-    }
-  return gaps;
-}
-
 } // namespace
 
 std::string not_covered_in_space(const analysis::Problem &problem, const analysis::Step &step)
@@ -86,18 +57,11 @@ EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::Ste
   SpaceInput in = space_input(problem, model);
   in.reference = reference_stress(d.mesh->element);
   find_kinds(in, d.mesh->comm());
-  const SpaceBoundary boundary = boundary_of(problem, s.step, in, point_tractions(s.contact));
+  const SpaceBoundary boundary = boundary_of(problem, s.step, in, tractions_of(s.contact));
 
   EnergyBound bound;
-  for (std::size_t k = 0; k < boundary.sides.size(); ++k)
-    if (boundary.sides[k].friction.acts) bound.of = std::max(bound.of, kind_of_friction(model.contact[k]));
-  const HostView<double *> moved = host_copy(*s.u);
-  for (const SpaceContact &c : boundary.sides) move_out(c, *d.mesh, moved);
+  const HostView<double *> moved = moved_out(problem, model, s, boundary.sides, bound);
   const RCP<const Vector> u = vector_of(moved, d.owned_dofs);
-  Vector way(*u, Teuchos::Copy);
-  way.update(-1, *s.u, 1);
-  bound.moved = std::sqrt(std::max(0., fem::internal_work(d, model.materials, way).energy_norm_squared));
-
   const SpaceContactTerms contact = contact_terms(boundary.sides, *d.mesh, moved);
   bound.missing = contact.missing;
   const double strain = fem::internal_work(d, model.materials, *u).energy_norm_squared;
@@ -107,11 +71,7 @@ EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::Ste
   bound.upper = strain / 2 - work + contact.energy;
 
   const BoundaryTractions all = with_contact(in, boundary, contact.tractions);
-  const double start = Teuchos::Time::wallTime();
-  Solved galerkin = galerkin_solution(problem, s, options, in, all);
-  bound.solve_seconds = Teuchos::Time::wallTime() - start;
-  bound.linear_iterations = galerkin.iterations;
-  if (!galerkin.failure.empty()) bound.missing = galerkin.failure;
+  Solved galerkin = timed_galerkin_solution(problem, s, options, in, all, bound);
   if (!bound.missing.empty()) return bound;
 
   const SpaceExchanges exchanges = space_exchanges(*d.mesh, in.facets);
@@ -130,22 +90,8 @@ EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::Ste
   std::vector<double> falls;
   for (int step = 0; step < steps; ++step) falls.push_back(descent.step());
   const StressDifference left = stress_difference(in, comm, forms, t, *on_overlap, of_cell);
-  bound.imbalance = left.force > 0 ? left.imbalance / left.force : 0;
-  double energy = left.energy;
-  const double stress_norm = std::sqrt(2 * energy) + lift;
-  for (int step = steps; step >= 0; --step) {
-    const double norm = std::sqrt(2 * energy) + lift;
-    bound.steps.insert(bound.steps.begin(), norm * norm / 2 + contact.gap);
-    if (step > 0) energy += falls[step - 1];
-  }
-  const double best = bound.steps.back();
-  bound.lower = bound.upper - best;
-  bound.energy_norm = std::sqrt(2 * best) + bound.moved;
-  bound.squared = local_terms(comm, of_cell, left.energy > 0 ? stress_norm * stress_norm / (2 * left.energy) : 0,
-                              gaps_in_space(in, boundary.sides, contact), bound.energy_norm * bound.energy_norm);
+  take_descent(comm, in, boundary.sides, contact, left, falls, lift, of_cell, bound);
   bound.contact_force.assign(boundary.sides.size(), {0, 0, "forces of bodies in space have no bound"});
-  if (!(bound.imbalance <= 1e-8))
-    bound.missing = "cells are out of balance by " + shown(bound.imbalance) + " of their forces";
   return bound;
 }
 

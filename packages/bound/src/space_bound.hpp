@@ -14,7 +14,4 @@ std::string not_covered_in_space(const analysis::Problem &problem, const analysi
 EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::StepSolution &s,
                            const solver::LinearSolverOptions &options, int steps);
 
-/// What J counts with the friction of a side.
-EnergyBound::Of kind_of_friction(const contact::ContactOptions &options);
-
 } // namespace rpc::bound
