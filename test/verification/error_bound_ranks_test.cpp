@@ -57,6 +57,7 @@ TEST(ErrorBoundOnRanks, OfABodyInSpaceIsThatOfOneRank)
   const std::vector<std::string> scenes[] = {
       {"Contact->Yield Stress=6", "Traction->front->Z=-6*sin(1 + 0.2*x*y)", "Body Force->X=2"},
       {"Contact->Yield Stress=inf", "Mesh->Cells={3, 2, 2}"},
+      {"Contact->Yield Stress=2", "Contact->Hardening=300", "Contact->Stiffness=3e3", "Contact->Friction Bound=0.3"},
       {"Contact->Yield Stress=inf", "Adapt->Meshes=nested", "Adapt->Target Relative Error=0.55"}};
   for (const auto &scene : scenes) {
     SCOPED_TRACE(scene.back());

@@ -121,7 +121,10 @@ AlongSide fitted_friction(const SpaceContact &c, const AlongSide &slip)
         toward = {q[0] / size, q[1] / size};
       else if (slipped > 0)
         toward = {slip[0][e][a] / slipped, slip[1][e][a] / slipped};
-      const double along = std::clamp(size, s * std::sqrt(0.5), s), across = std::sqrt((s - along) * (s + along));
+      // What rounding leaves to the limit is none: a root would make much of it, and ranks would differ.
+      constexpr double rounding = 1e-9;
+      const double along = size >= (1 - rounding) * s ? s : std::max(size, s * std::sqrt(0.5)),
+                   across = std::sqrt((s - along) * (s + along));
       for (int k = 0; k < 2; ++k) {
         wanted.near[k][e][a] = size > s ? s * toward[k] : q[k];
         wanted.high[k][e][a] = k == 0 ? along : across;
