@@ -118,10 +118,11 @@ std::string contact_missed_before(const Scene &scene, const analysis::Solution &
   });
   if (first == s.history.end()) return "";
   std::ostringstream note;
-  note << analysis::at_time(first->time) << "unseen contact: a contact side lay " << std::setprecision(2)
-       << first->contact.unseen_penetration << " [" << scene.model.units.of(unit::length, false)
-       << "] inside the foundation, between contact points that were open, so that the contact force lacked it; the run "
-          "before the restart says where";
+  note
+      << analysis::at_time(first->time) << "unseen contact: a contact side lay " << std::setprecision(2)
+      << first->contact.unseen_penetration << " [" << scene.model.units.of(unit::length, false)
+      << "] inside the foundation, between contact points that were open, so that the contact force lacked it; the run "
+         "before the restart says where";
   return note.str();
 }
 
