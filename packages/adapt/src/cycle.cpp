@@ -64,7 +64,7 @@ double moved_by(const Cycle &cycle, const double force)
   return force > 0 ? cycle.energy_norm_squared / force : 0;
 }
 
-/// What a mesh leaves open of what forces move: what it would leave of forces if that was given, times how soft it is.      (10.7d)
+/// What a mesh leaves open of what forces move: what it would leave of forces if that was given, times how soft it is.      (10.7e)
 /// @param of_force  left of forces [N], in 2D per m   @param share  of a force
 MotionErrors left_of_motions(const Cycle &cycle, double of_force, const double share)
 {
