@@ -163,18 +163,19 @@ bool springs_alone(const Cycle &cycle)
   return all.foundation_energy > 0 && all.max_pressure > 0 && all.max_penetration > 0 && all.max_dent == 0;
 }
 
-/// Of springs that alone give way the largest pressure and the largest penetration are known to the same share.       (10.7a)
+/// Of springs that alone give way the largest pressure and the largest penetration are known to the same share. Nor has a penetration a bar
+/// without one of the pressure where it is no larger than its bar: the foundation has just begun to give way.            (10.7a)
 void share_what_springs_tell(const Cycle &last, ObservedErrors &errors)
 {
-  if (!springs_alone(last)) return;
+  const bool springs = springs_alone(last),
+             just_begun = last.contact.max_dent > 0 && errors.max_penetration >= last.contact.max_penetration;
   const auto unknown = errors.unknown.find("max_pressure");
-  if (unknown != errors.unknown.end()) {
-    if (errors.unknown.count("max_penetration") == 0)
-      errors.unknown["max_penetration"] =
-          "on springs it goes with the largest pressure, which has no bar: " + unknown->second;
+  if (unknown != errors.unknown.end() && (springs || just_begun)) {
+    const std::string where = springs ? "on springs it goes with" : "the foundation has just begun to give way under";
+    errors.unknown.emplace("max_penetration", where + " the largest pressure, which has no bar: " + unknown->second);
     errors.max_penetration = std::numeric_limits<double>::quiet_NaN();
-    return;
   }
+  if (!springs || unknown != errors.unknown.end()) return;
   const double compliance = last.contact.max_penetration / last.contact.max_pressure;
   errors.max_penetration = std::max(errors.max_penetration, errors.max_pressure * compliance);
   errors.max_pressure = std::max(errors.max_pressure, errors.max_penetration / compliance);

@@ -292,6 +292,24 @@ TEST(ErrorBars, OfABodyThatDoesNotTouchAreZeroWhereItsGapIsKnownBetterThanThat)
   }
 }
 
+TEST(ErrorBars, OfAPenetrationThatHasJustBegunGoWithThoseOfThePressure)
+{
+  std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.05, 10, 30)};
+  for (auto &cycle : cycles) {
+    cycle.peak.lowest_bound = 30;
+    cycle.peak.friction_edge = true;
+  }
+  cycles.front().contact.max_penetration = 1e-6;
+  cycles.back().contact.max_dent = cycles.back().contact.max_penetration = 4e-6;
+  ASSERT_EQ(observed_errors(cycles).unknown.count("max_pressure"), 1);
+  EXPECT_EQ(observed_errors(cycles).unknown.count("max_penetration"), 0); // its bar is smaller than itself
+  cycles.front().contact.max_penetration = 9e-6;
+  EXPECT_TRUE(std::isnan(observed_errors(cycles).max_penetration));
+  EXPECT_EQ(observed_errors(cycles).unknown.count("max_penetration"), 1);
+  for (auto &cycle : cycles) cycle.peak.friction_edge = false;
+  EXPECT_FALSE(std::isnan(observed_errors(cycles).max_penetration));
+}
+
 TEST(ErrorBars, OfNoPenetrationAreNoneWhereABodyMayTouchWhatGivesWay)
 {
   std::vector<Cycle> cycles = {open_mesh(0.1, 0.0195), open_mesh(0.02, 0.0195)};
