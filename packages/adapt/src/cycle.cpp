@@ -164,11 +164,11 @@ bool springs_alone(const Cycle &cycle)
 }
 
 /// Of springs that alone give way the largest pressure and the largest penetration are known to the same share. Nor has a penetration a bar
-/// without one of the pressure where it is no larger than its bar: the foundation has just begun to give way.            (10.7a)
+/// without one of the pressure where it is smaller than that, and dents are: the foundation has just begun to give way.            (10.7a)
 void share_what_springs_tell(const Cycle &last, ObservedErrors &errors)
 {
-  const bool springs = springs_alone(last),
-             just_begun = last.contact.max_dent > 0 && errors.max_penetration >= last.contact.max_penetration;
+  const double deepest = std::max(last.contact.max_penetration, last.contact.max_dent);
+  const bool springs = springs_alone(last), just_begun = last.contact.max_dent > 0 && errors.max_penetration > deepest;
   const auto unknown = errors.unknown.find("max_pressure");
   if (unknown != errors.unknown.end() && (springs || just_begun)) {
     const std::string where = springs ? "on springs it goes with" : "the foundation has just begun to give way under";

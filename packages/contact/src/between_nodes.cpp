@@ -153,6 +153,7 @@ struct SideSamples {
 struct Misread {
   double energy = 0, force = 0; // [J], [N], in 2D per m
   double penetration = 0;       // the most [m]
+  double ends = 0;              // half of the facet if its nodes bear and a sample does not [m^(dim-1)]
 };
 
 /// Of facets that bear a pressure and within which the gap is far from what its nodes show of it: it jumps, or has a kink.
@@ -231,6 +232,7 @@ struct GapReading {
       found.energy += radius * std::abs(off_energy);
       found.force += radius * std::abs(off_force);
       found.penetration = std::max(found.penetration, dent + v - layer * p + moved);
+      if (low > 0 && !(p > 0)) found.ends = rows.area(f) / 2;
       radii += radius;
     }
     const double share = radii > 0 ? rows.area(f) / radii : 0;
@@ -348,6 +350,7 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
       mine.misread_energy += misread.energy;
       mine.misread_force += misread.force;
       mine.misread_penetration = std::max(mine.misread_penetration, misread.penetration);
+      mine.misread_ends += misread.ends;
     }
     if (!unseen) continue;
     sum += squared[f] = found.squared;
@@ -393,6 +396,7 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
       squared = look_at_side(d, *sides[k], options[k], points, materials, u, static_cast<int>(k), least, result, mine);
     result.between.misread_energy += sum_all(comm, mine.misread_energy);
     result.between.misread_force += sum_all(comm, mine.misread_force);
+    result.between.misread_ends += sum_all(comm, mine.misread_ends);
     result.between.misread_penetration =
         std::max(result.between.misread_penetration, max_all(comm, mine.misread_penetration));
     const auto deepest = deepest_of_all(comm, mine.deepest), unseen = deepest_of_all(comm, mine.unseen);

@@ -234,6 +234,9 @@ TEST(BetweenNodes, WhereTheGapJumpsWithinAFacetReadingItAtNodesLeavesEnergyForce
   EXPECT_NEAR(between.misread_energy / (share * 0.5 * stiffness * (left * left - right * right)), 1, 5e-3);
   EXPECT_NEAR(between.misread_force / (share * stiffness * (left - right)), 1, 5e-3);
   EXPECT_NEAR(between.misread_penetration, left * stiffness / k, 1e-12);
+  EXPECT_EQ(between.misread_ends, 0); // both parts bear a pressure
+  side.gap = ScalarField("higher step", [=](const Point &x) { return x[0] < 0.7 ? -jump : jump; });
+  EXPECT_NEAR(Looked({2, 1}, side, p).result.between.misread_ends, h / 2, 1e-12);
   // Not where nothing bears a pressure, nor where the gap is smooth or its jump lies at a node.
   EXPECT_EQ(Looked({2, 1}, side).result.between.misread_energy, 0);
   for (const auto &gap : {ScalarField("slope", [](const Point &x) { return -0.01 * x[0]; }),

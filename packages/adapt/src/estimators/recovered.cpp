@@ -299,7 +299,7 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
   estimate.peak.yield_jump = all[4] > 0;
   estimate.peak.gap_jump = all[5] > 0;
   estimate.peak.dented_jump = all[13] > 0;
-  estimate.contact_ends = all[6];
+  estimate.contact_ends = all[6] + unseen.misread_ends;
   estimate.peak.friction_jump = all[11] > 0;
   estimate.peak.friction_edge = all[12] > 0;
   estimate.peak.kink = max_all(mesh.comm(), kink);

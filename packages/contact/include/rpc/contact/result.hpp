@@ -126,6 +126,7 @@ struct BetweenNodes {
   // off, and how deep they may have been pressed in, with dents that were there.                               (3.16a)
   double misread_force = 0, misread_energy = 0; ///< [N], [J], in 2D per m
   double misread_penetration = 0;               ///< [m]
+  double misread_ends = 0; ///< half of the facets whose nodes all bear, and between which contact may end [m^(dim-1)]
 };
 
 /// What a user reads off the contact sides: values at this rank's contact nodes, and sums over all ranks.
