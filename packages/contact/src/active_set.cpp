@@ -257,6 +257,7 @@ void keep_states(const ActiveSet &present, const ActiveSetChoice &choice, const 
   const auto slip = choice.slip;
   const auto direction = choice.direction;
   const auto lever = choice.lever;
+  const auto cannot_stick = choice.cannot_stick;
   const auto violated = choice.violation;
   Kokkos::parallel_for(
       "rpc::contact::keep_states", device_range(static_cast<LO>(state.extent(0))), KOKKOS_LAMBDA(const LO i) {
@@ -265,6 +266,7 @@ void keep_states(const ActiveSet &present, const ActiveSetChoice &choice, const 
         set_row(lever, i, row(now.lever, i));
         if (slip(i) == now.slip(i)) return; // directions in space follow the slip
         slip(i) = now.slip(i);
+        cannot_stick(i) = now.cannot_stick(i);
         set_row(direction, i, row(now.direction, i));
       });
   Kokkos::fence();

@@ -163,6 +163,30 @@ TEST(ChooseStates, AllStickFirstWhereContactMustHoldTheBody)
   EXPECT_EQ(choose(*held_by_contact.iterate, *pressing(held_by_contact, 0, 0)).changes, num_nodes);
 }
 
+/// Of points that were to slip since they cannot stick, and that keep their state.
+TEST(ChooseStates, PointsThatKeepTheirStateCanStickAsBefore)
+{
+  auto rough = foundation();
+  rough.friction_coefficient = ScalarField(0.5);
+  const Scene scene(std::vector{rough});
+  const auto u = pressing(scene, 0, 0);
+  choose(*scene.iterate, *u);
+  auto choice = scene.iterate->choose_active_set(*u, 0);
+  ASSERT_EQ(choice.changes, 0); // all stick
+  Kokkos::deep_copy(choice.slip, contact::Slip::slip);
+  Kokkos::deep_copy(choice.cannot_stick, true);
+  const auto violation = Kokkos::create_mirror_view(choice.violation);
+  const auto coords = to_host(scene.d.mesh->coords);
+  const auto node = to_host(scene.iterate->points().node);
+  for (std::size_t i = 0; i < node.extent(0); ++i) violation(i) = coords(node(i), 0) == 0 ? 1 : 0.1;
+  Kokkos::deep_copy(choice.violation, violation);
+  const auto changed = scene.iterate->largest_changes(choice, 0.5);
+  EXPECT_EQ(changed.changes, 1);
+  const auto slip = to_host(changed.slip);
+  const auto cannot_stick = to_host(changed.cannot_stick);
+  for (std::size_t i = 0; i < slip.extent(0); ++i) EXPECT_EQ(cannot_stick(i), slip(i) == contact::Slip::slip);
+}
+
 /// On rollers at its left, so that only contact stops it from going down.
 struct OnRollers : Scene {
   OnRollers() : Scene({foundation(0.1)}, {"left", "left", {ScalarField(0.), std::nullopt}}) {}
