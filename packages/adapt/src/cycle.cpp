@@ -66,21 +66,21 @@ double moved_by(const Cycle &cycle, const double force)
 
 /// What a mesh leaves open of what forces move: what it would leave of forces if that was given, times how soft it is.      (10.7e)
 /// @param of_force  left of forces [N], in 2D per m   @param share  of a force
-MotionErrors left_of_motions(const Cycle &cycle, double of_force, const double share)
+MotionErrors left_of_motions(const Cycle &cycle, const double of_force, const double share)
 {
   const Motions &m = cycle.motions;
   const double force = force_at_work(cycle.contact.force, cycle.reactions),
                mean = force > 0 ? moved_by(cycle, force) / force : 0;
   MotionErrors left;
+  double of_all =
+      of_force; // and of forces that have the moments at the arms: of loads that turn a side, and do not press it
   for (std::size_t j = 0; j < m.moments.size(); ++j) {
-    const double moment = share * length(m.moments[j]);
-    left.moments.push_back(std::max(of_force * m.arms[j], moment));
-    if (m.arms[j] > 0) of_force = std::max(of_force, moment / m.arms[j]); // loads that turn a side, and do not press it
+    left.moments.push_back(std::max(of_force * m.arms[j], share * length(m.moments[j])));
+    if (m.arms[j] > 0) of_all = std::max(of_all, left.moments[j] / m.arms[j]);
   }
-  for (const double softness : m.softness.displacement)
-    left.displacements.push_back(of_force * std::max(softness, mean));
-  for (const double softness : m.softness.rotation) left.rotations.push_back(of_force * softness);
-  left.obstacle = of_force * std::max(m.softness.obstacle, mean);
+  for (const double softness : m.softness.displacement) left.displacements.push_back(of_all * std::max(softness, mean));
+  for (const double softness : m.softness.rotation) left.rotations.push_back(of_all * softness);
+  left.obstacle = of_all * std::max(m.softness.obstacle, mean);
   return left;
 }
 

@@ -147,6 +147,22 @@ TEST(ErrorBars, OfWhatForcesMoveAreThoseOfForcesTimesHowSoftItIs)
   EXPECT_NEAR(change.rotations[0], 3 * force, 1e-15);
 }
 
+TEST(ErrorBars, OfAMomentDoNotDependOnTheOrderOfRigidSides)
+{
+  std::vector<Cycle> cycles = {pressed(0.1, 1), pressed(0.02, 1)};
+  for (Cycle &c : cycles) { // the first side is turned, the second one pressed
+    c.motions.moments = {{0, 0, 1000}, {0, 0, 0}};
+    c.motions.arms = {0.5, 0.5};
+    c.motions.rotations.push_back({});
+    c.motions.softness.rotation = {3, 3};
+  }
+  const auto errors = observed_errors(cycles).motions;
+  const double share = 2 * 0.02 * 0.02;
+  EXPECT_NEAR(errors.moments[0], share * 1000, 1e-12);
+  EXPECT_NEAR(errors.moments[1], share * 10 * 0.5, 1e-12);
+  EXPECT_NEAR(errors.rotations[1], 3 * share * 1000 / 0.5, 1e-12); // by a force that has the moment at the arm
+}
+
 TEST(ErrorBars, OfForcesAndMomentsThatTheLoadFixesAreWhatMeshesShow)
 {
   const adapt::FixedByLoad fixed = {{false, false, false}, {true}, {true}};
