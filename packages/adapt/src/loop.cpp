@@ -331,6 +331,7 @@ public:
 
   Solution solve(const double t, const Solution *const last)
   {
+    if (last) resumed_.reset(); // with its mesh
     const Solution *const earlier = last || !resumed_ ? last : &*resumed_;
     Task step = task_;
     step.time = t;
@@ -367,6 +368,7 @@ Solution solve_steps_adaptively(const Task &task, const RCP<const Comm> &comm, c
   const auto after = from ? std::optional<double>(from->last.time) : std::nullopt;
   StepsOnMeshes steps(task, std::move(from), comm, listener);
   auto s = analysis::run_steps<Solution>(task, after, *comm, listener, seconds, steps);
+  if (!s) return {};
   count_earlier_steps(task, *s, comm);
   return *std::move(s);
 }
