@@ -127,6 +127,16 @@ class Promises(RpcTestCase):
                 self.assertIn("the smallest gap that is left is within its error", unknown["max_pressure"])
                 self.assertEqual(bars["max_penetration"], None if len(options) > 5 else 0)  # a rigid foundation never gives way
 
+    def test_a_bump_between_nodes_counts_for_what_may_touch(self):
+        # The solution presses the bump with 0.9 N; on the last mesh, which bends less, 0.6 mm are left there, and 0.43 m at the nodes.
+        job = BEAM, [*adapt(0.2, 3000), "--set=Mesh->Element=P1", "--set=Material->Young's Modulus=2000",
+                     "--set=Contact->Gap=min(1, 0.2112 + 100*(x - 2.445)^2)"]
+        summary = self.runs([job])[0][1]
+        bars = summary["adaptation"]["errors"]
+        self.assertEqual(summary["max_pressure"], 0)
+        self.assertGreater(bars["contact_force"], 0.9)
+        self.assertEqual([bars["max_pressure"], bars["contact_length"]], [None, None])
+
     def test_no_mesh_but_the_first_has_more_unknowns_than_allowed(self):
         limits = [(deck, meshes, limit) for deck, meshes, all_limits in [
             (PUNCH, "gmsh", [3000, 300, 20000, 45000]), (PUNCH, "nested", [3000, 300, 20000]), (DISC, "gmsh", [1000, 300, 3000]),

@@ -41,14 +41,6 @@ ErrorEstimate unknown_estimate()
   return estimate;
 }
 
-/// What is left between contact sides and foundation at nodes, and at samples between them where these lie in it. Collective.
-double gap_left(const Comm &comm, const contact::ContactNodes &points, const contact::ContactResult &result)
-{
-  const double at_nodes = contact::smallest_gap(comm, points, result),
-               deepest = result.total.max_penetration_between_nodes;
-  return deepest > 0 ? std::min(at_nodes, -deepest) : at_nodes;
-}
-
 /// A run on one mesh whose solution gets its error estimate, and what the loop reads of its pressures. Collective.
 /// @param run  with the listener that it is given
 template <class Run>
@@ -72,7 +64,7 @@ Solution with_estimate(const Task &task, const Listener &listener, const Run &ru
     if (task.adapt.adapts()) s.pressure_norm = contact::pressure_distance(comm, points, pressure, {});
     if (found.start_pressure)
       s.pressure_change = contact::pressure_distance(comm, points, pressure, *found.start_pressure);
-    if (task.adapt.adapts()) s.smallest_gap = gap_left(comm, points, found.contact);
+    if (task.adapt.adapts()) s.smallest_gap = contact::smallest_gap(comm, points, found.contact);
     if (!task.adapt.estimate) return;
     if (!found.has_results()) {
       if (!s.estimate) s.estimate = unknown_estimate(); // else that of the step before, whose results these are

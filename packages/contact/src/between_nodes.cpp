@@ -3,6 +3,7 @@
 
 #include "facet_samples.hpp"
 #include "gap_search.hpp"
+#include "rpc/contact/clearance.hpp"
 #include "rpc/contact/law/foundation.hpp"
 #include "rpc/contact/rounding.hpp"
 #include "rpc/core/device_values.hpp"
@@ -43,6 +44,7 @@ struct Found {
   Point place{};
   double width = 0;   // of the part in the foundation [m]
   double squared = 0; // of an unseen facet, its part in twice the energy [J]
+  double largest_excess = -std::numeric_limits<double>::infinity(); // e of all samples, < 0 outside the foundation [m]
 };
 
 /// Twice the energy per area that it takes to push a part of a facet out of the foundation: a layer of the body as deep as the part is wide
@@ -89,6 +91,7 @@ struct SideSamples {
       const FacetSample sample = sample_at(rows, f, shape, options, most_allowed);
       const double depth = excess_at(sample, options);
       radii += axisymmetric ? sample.place[0] : 1;
+      if (depth > found.largest_excess) found.largest_excess = depth;
       if (depth > least) inside.emplace_back(depth, sample.place);
       if (!(depth > std::max(least, found.deepest))) continue;
       found.deepest = depth;
@@ -247,8 +250,8 @@ Found found_in(const HiddenPart &hidden, const ContactOptions &options, const do
 {
   const double area = 0.25 * 3.14159265358979 * hidden.width[0] * hidden.width[1];
   const double width = std::sqrt(hidden.width[0] * hidden.width[1]);
-  return {hidden.depth, hidden.place, width,
-          area / 3 * pushed_out(options, hidden.depth, modulus, width, hidden.place)};
+  return {hidden.depth, hidden.place, width, area / 3 * pushed_out(options, hidden.depth, modulus, width, hidden.place),
+          hidden.depth};
 }
 
 /// Into how many parts the edges of a side's facets are divided.
@@ -288,10 +291,12 @@ PlaceBetweenNodes deepest_of_all(const Comm &comm, const PlaceBetweenNodes &mine
   return {numbers[0], {numbers[1], numbers[2], numbers[3]}, static_cast<int>(numbers[4]), numbers[5], numbers[6]};
 }
 
-/// Looks at the facets of one side. @return twice the energy of its unseen facets, of this rank [J]
+/// Looks at the facets of one side.
+/// @param open_by  where nothing touches, the smallest gap at nodes [m]: facets that may be nearer have samples then, too; else minus infinity
+/// @return twice the energy of its unseen facets, of this rank [J]
 double look_at_side(const fem::Discretization &d, const mesh::Side &side, const ContactOptions &options,
                     const ContactNodes &points, const fem::Materials &materials, const Vector &u, const int k,
-                    const double least, ContactResult &result, BetweenNodes &mine)
+                    const double least, const double open_by, ContactResult &result, BetweenNodes &mine)
 {
   const mesh::Mesh &mesh = *d.mesh;
   const mesh::Element facet = mesh.element.facet();
@@ -338,6 +343,9 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     if (!sieves || samples.is_near(f)) {
       const bool all_touches = shares && !unseen && !rows.is_partly_open(f);
       found = (unseen ? samples : all_touches ? few : edges).look(f, modulus, least);
+    } else if (-rows.most_excess(f) - rows.size(f) <
+               open_by) { // if the gap changes along the side by no more than the way
+      found = few.look(f, modulus, least);
     }
     if (unseen && most_searched > 0 && !(found.deepest > 0))
       if (const auto hidden =
@@ -345,6 +353,7 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
         found = found_in(*hidden, options, modulus);
     const PlaceBetweenNodes place{found.deepest, found.place, k, found.width, rows.size(f)};
     if (place.depth > mine.deepest.depth) mine.deepest = place;
+    mine.smallest_gap = std::min(mine.smallest_gap, -found.largest_excess);
     if (!unseen && (found.deepest > 0 || rows.is_partly_open(f))) {
       const Misread misread = reading.read(f, modulus, 4 * mu * (lambda + mu) / modulus);
       mine.misread_energy += misread.energy;
@@ -386,6 +395,8 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
   if (sides.empty()) return;
   const double least = Rounding::depth * mesh::diameter(*d.mesh);
   if (points.num_weightless > 0) mark_unseen_points(points, least, result);
+  const double open_by =
+      result.total.contact_length > 0 ? -std::numeric_limits<double>::infinity() : smallest_gap(comm, points, result);
   for (std::size_t k = 0; k < sides.size(); ++k) {
     BetweenNodes mine;
     double squared = 0;
@@ -393,12 +404,14 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
       for (auto *const none : {&result.between.unseen_squared, &result.between.unseen_width})
         none->push_back(DeviceView<double *>("rpc::contact::nothing_unseen", sides[k]->facets.extent(0)));
     else
-      squared = look_at_side(d, *sides[k], options[k], points, materials, u, static_cast<int>(k), least, result, mine);
+      squared = look_at_side(d, *sides[k], options[k], points, materials, u, static_cast<int>(k), least, open_by,
+                             result, mine);
     result.between.misread_energy += sum_all(comm, mine.misread_energy);
     result.between.misread_force += sum_all(comm, mine.misread_force);
     result.between.misread_ends += sum_all(comm, mine.misread_ends);
     result.between.misread_penetration =
         std::max(result.between.misread_penetration, max_all(comm, mine.misread_penetration));
+    result.between.smallest_gap = std::min(result.between.smallest_gap, min_all(comm, mine.smallest_gap));
     const auto deepest = deepest_of_all(comm, mine.deepest), unseen = deepest_of_all(comm, mine.unseen);
     ContactSums &sums = result.sides[k];
     sums.max_penetration_between_nodes = deepest.depth;

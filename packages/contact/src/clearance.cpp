@@ -114,8 +114,8 @@ double smallest_gap(const Comm &comm, const ContactNodes &points, const ContactR
         if (weight(i) > 0 && dent(i) - v(i) < smallest) smallest = dent(i) - v(i);
       },
       Kokkos::Min<double>(least));
-  const double all = min_all(comm, least);
-  return all < std::numeric_limits<double>::max() ? all : infinite; // a minimum over no points is DBL_MAX
+  const double all = min_all(comm, least); // a minimum over no points is DBL_MAX
+  return std::min(all < std::numeric_limits<double>::max() ? all : infinite, result.between.smallest_gap);
 }
 
 } // namespace rpc::contact

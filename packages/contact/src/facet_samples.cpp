@@ -74,6 +74,13 @@ double FacetRows::most_allowed(const LO f) const
   return most;
 }
 
+double FacetRows::most_excess(const LO f) const
+{
+  double most = column(f, 0, excess);
+  for (int a = 1; a < nodes; ++a) most = std::max(most, column(f, a, excess));
+  return most;
+}
+
 namespace
 {
 

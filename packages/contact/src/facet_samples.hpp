@@ -51,6 +51,7 @@ struct FacetRows {
   bool is_partly_open(LO f) const;
   /// How deep the contact points of a facet have been pressed in, at most [m]: points without weight, which nothing holds, count as that.
   double most_allowed(LO f) const;
+  double most_excess(LO f) const; // at its nodes [m]
 };
 
 /// Collective. @param side  which of the contact sides   @param u  (owned dofs) [m]

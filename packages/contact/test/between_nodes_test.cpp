@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/between_nodes.hpp"
 
+#include "rpc/contact/clearance.hpp"
 #include "rpc/contact/surface/sphere.hpp"
 #include "touching_box.hpp"
 
@@ -65,6 +66,23 @@ TEST(BetweenNodes, ABumpBetweenTwoNodesIsUnseenAndItsDepthPlaceAndWidthAreTold)
   EXPECT_NEAR(at.facet, 0.5, 1e-12);
   EXPECT_EQ(looked.result.total.unseen_penetration, at.depth);
   EXPECT_EQ(looked.result.total.max_penetration_between_nodes, at.depth);
+}
+
+TEST(BetweenNodes, SmallestGapIsThatOfSamplesBetweenTheNodesToo)
+{
+  const auto left = [](const double gap, const double depth) {
+    auto options = bump(depth, 0.1);
+    const ScalarField of_bump = options.gap;
+    options.gap = ScalarField("bump further off", [=](const Point &x) { return gap + of_bump(x); });
+    const Looked looked({2, 1}, options);
+    return contact::smallest_gap(looked.d.mesh->comm(), looked.points, looked.result);
+  };
+  EXPECT_NEAR(left(0.03, 0.02), 0.01, 1e-5); // at nodes 0.09 at least
+  EXPECT_NEAR(left(0.01, 0.02), -0.01, 1e-5);
+  auto face = touching("back"); // a sphere below the middle of a face, whose nodes are alike
+  face.obstacle = {contact::Sphere{3}, {0.75, 0.75, -3.001}};
+  const Looked looked({3, 1}, face);
+  EXPECT_NEAR(contact::smallest_gap(looked.d.mesh->comm(), looked.points, looked.result), 0.001, 1e-6);
 }
 
 TEST(BetweenNodes, EnergyIsThatOfALayerAsDeepAsThePartIsWide)

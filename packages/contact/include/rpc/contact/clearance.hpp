@@ -23,8 +23,8 @@ Overlap overlap(const fem::Discretization &d, const ContactNodes &points, int si
 /// drags it along. Collective.
 bool is_loaded(const Comm &comm, const fem::ElasticProblem &elastic, const ContactNodes &points);
 
-/// The smallest distance of the body from its foundations, with their dents, after a solve [m]; infinite where there are no points.
-/// Collective.
+/// The smallest distance of the body from its foundations, with their dents, after a solve [m]: at points, and at samples between them where
+/// look_between_nodes() has been called; < 0 where a sample lies in a foundation; infinite where there are no points. Collective.
 double smallest_gap(const Comm &comm, const ContactNodes &points, const ContactResult &result);
 
 } // namespace rpc::contact

@@ -6,6 +6,7 @@
 #include "rpc/core/quantity.hpp"
 
 #include <array>
+#include <limits>
 #include <vector>
 
 namespace rpc::contact
@@ -127,6 +128,8 @@ struct BetweenNodes {
   double misread_force = 0, misread_energy = 0; ///< [N], [J], in 2D per m
   double misread_penetration = 0;               ///< [m]
   double misread_ends = 0; ///< half of the facets whose nodes all bear, and between which contact may end [m^(dim-1)]
+  /// The least of -e, of (3.15), over the samples of all ranks [m]; infinite where nothing was sampled.
+  double smallest_gap = std::numeric_limits<double>::infinity();
 };
 
 /// What a user reads off the contact sides: values at this rank's contact nodes, and sums over all ranks.
