@@ -286,8 +286,8 @@ def rules(root):
 
 def check_sources_of_rules(root):
     """Equations and measurements that rules name as their sources are there."""
-    texts = {name: (root / "doc" / name).read_text() if (root / "doc" / name).exists() else "" for name in ("theory.md", "linear_solvers.md", "measurements.md")}
-    texts["theory.md"] += texts["linear_solvers.md"]  # a part of it, with its numbers
+    texts = {name: (root / "doc" / name).read_text() if (root / "doc" / name).exists() else "" for name in ("theory.md", "linear_solvers.md", "bounds.md", "measurements.md")}
+    texts["theory.md"] += texts["linear_solvers.md"] + texts["bounds.md"]  # parts of it, with its numbers
     for file in [*sorted(root.glob("packages/*/include/rpc/*/rules.hpp")), *root.glob("src/rules.hpp")]:
         for line, text in enumerate(file.read_text().splitlines(), 1):
             named = [("theory.md", equation) for equation in re.findall(r'"[^"]*(\(\d+\.\d+[a-z]?\))[^"]*"\};', text)]

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-// Guaranteed bounds of bodies in space, doc/theory.md, section 13. The table comes from independent code.
+// Guaranteed bounds of bodies in space, doc/bounds.md. The table comes from independent code.
 
 namespace error_bound_in_space_test
 {

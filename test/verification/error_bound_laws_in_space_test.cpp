@@ -4,7 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-// Guaranteed bounds in space on foundations that harden, are elastic, keep dents or rub, doc/theory.md (13.11), (13.12).
+// Guaranteed bounds in space on foundations that harden, are elastic, keep dents or rub, doc/bounds.md (13.11), (13.12).
 
 namespace error_bound_laws_in_space_test
 {

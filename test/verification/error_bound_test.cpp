@@ -8,7 +8,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
-// Guaranteed bounds of energy and error, doc/theory.md, section 13. The table of the beam comes from independent code; its energies from
+// Guaranteed bounds of energy and error, doc/bounds.md. The table of the beam comes from independent code; its energies from
 // brackets by adapted meshes.
 
 namespace error_bound_test

@@ -64,7 +64,7 @@ double moved_by(const Cycle &cycle, const double force)
   return force > 0 ? cycle.energy_norm_squared / force : 0;
 }
 
-/// What a mesh leaves open of what forces move: what it would leave of forces if that was given, times how soft it is.      (10.7e)
+/// What a mesh leaves open of what forces move: what it would leave of forces if that was given, times how soft it is.      (10.7d)
 /// @param of_force  left of forces [N], in 2D per m   @param share  of a force
 MotionErrors left_of_motions(const Cycle &cycle, const double of_force, const double share)
 {
@@ -202,7 +202,7 @@ double difference_of_gaps(const Cycle &a, const Cycle &b)
   return a.smallest_gap == b.smallest_gap ? 0 : std::abs(b.smallest_gap - a.smallest_gap);
 }
 
-/// By how much the smallest gap may be off, as the meshes of a step show.                                         (10.7d)
+/// By how much the smallest gap may be off, as the meshes of a step show.                                         (10.7e)
 double error_of_gap(const std::vector<Cycle> &cycles, const std::vector<double> &eta)
 {
   const Cycle &last = cycles.back();
@@ -210,7 +210,7 @@ double error_of_gap(const std::vector<Cycle> &cycles, const std::vector<double> 
 }
 
 /// Where nothing touches, contact force, pressures and the area in contact are 0 where the gap that is left is larger than its error; else no
-/// mesh has shown what pressures there may be.                                                                   (10.7d)
+/// mesh has shown what pressures there may be.                                                                   (10.7e)
 void judge_open_body(const Cycle &last, const double error_of_gap, ObservedErrors &errors)
 {
   if (last.contact.contact_length > 0) return;

@@ -6,7 +6,7 @@
 namespace rpc::adapt
 {
 
-/// The estimate that meshes follow: with a guaranteed bound its local terms, in which unseen contact is counted.         doc/theory.md (13.1)
+/// The estimate that meshes follow: with a guaranteed bound its local terms, in which unseen contact is counted.         doc/bounds.md (13.1)
 ErrorEstimate guide(const Solution &s);
 
 /// What the target is a limit of: the relative error, estimated or bounded. Without a bound that is asked for nothing is known.

@@ -79,7 +79,7 @@ std::vector<std::pair<LO, double>> gaps_of_cells(const Input &in, const std::vec
   return gaps;
 }
 
-/// The interval, norms and local terms that the descent leads to.                          doc/theory.md (13.8), (13.10)
+/// The interval, norms and local terms that the descent leads to.                          doc/bounds.md (13.8), (13.10)
 /// @param left     at its end   @param falls  of the energy by its steps [J]
 /// @param lift     norm of the stresses that take up loads beyond the order
 /// @param of_cell  (owned cells) parts of left.energy

@@ -56,7 +56,7 @@ struct AffineCell {
   }
 };
 
-/// s : C^-1 t for components xx, yy, xy.                                                                  doc/theory.md (13.2)
+/// s : C^-1 t for components xx, yy, xy.                                                                  doc/bounds.md (13.2)
 KOKKOS_INLINE_FUNCTION void compliance(const double lambda, const double mu, double (&S)[3][3])
 {
   const double a = lambda / (2 * (lambda + mu));

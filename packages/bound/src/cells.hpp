@@ -12,7 +12,7 @@ using Tractions = DeviceView<double *>;
 
 /// The energies of the cells by their tractions, the inner stresses at their best:
 ///
-///     E_T(t) = t . A t/2 + b . t + const.                                                             doc/theory.md (13.8)
+///     E_T(t) = t . A t/2 + b . t + const.                                                             doc/bounds.md (13.8)
 struct CellForms {
   DeviceView<double ***> A; ///< (cells, tractions, tractions), in the signs of the facets
   DeviceView<double **> b;  ///< (cells, tractions)

@@ -7,7 +7,7 @@
 namespace rpc::bound
 {
 
-/// A displacement that makes a functional of the stress of a contact side's normal force.              doc/theory.md (13.14)
+/// A displacement that makes a functional of the stress of a contact side's normal force.              doc/bounds.md (13.14)
 struct UnitPress {
   RCP<const Vector> w;      ///< (owned dofs); null: there is none
   double low = 0, high = 0; ///< of what pressure the functional misses where w is not 1 along the normal [N]

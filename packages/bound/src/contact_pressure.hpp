@@ -14,7 +14,7 @@ namespace rpc::bound
 /// Three numbers of a facet: at its ends and in the middle, or the coefficients of Bernstein's polynomials. With order 1 the first two.
 using OfFacet = std::array<double, 3>;
 
-/// Friction along a contact side, whose limits s are given.                                            doc/theory.md (13.12)
+/// Friction along a contact side, whose limits s are given.                                            doc/bounds.md (13.12)
 struct FrictionFacets {
   bool acts = false;              ///< else nothing below is there
   std::vector<OfFacet> limit_of;  ///< (facets) Bernstein coefficients of s [Pa]
@@ -66,7 +66,7 @@ inline std::array<double, 2> tangent_of(const std::array<double, 2> &normal)
 }
 
 /// A pressure that the law admits, whose forces are near to those of the contact points in the norm of their work, and that does not press
-/// where the body is off the foundation.                                                               doc/theory.md (13.4)
+/// where the body is off the foundation.                                                               doc/bounds.md (13.4)
 /// @param v  (facets) penetration at the nodes [m]
 /// @return (facets) Bernstein coefficients [Pa]
 std::vector<OfFacet> fitted_pressure(const ContactFacets &c, const std::vector<OfFacet> &v);
@@ -82,7 +82,7 @@ struct NormalLaw {
 };
 
 /// Integrals over a facet of unit length of the energy of the law, psi(v) or s |e|, and of what the pair misses of it: psi(v) + psi*(p) - p v, or
-/// s |e| - q e.                                                                                         doc/theory.md (13.11)
+/// s |e| - q e.                                                                                         doc/bounds.md (13.11)
 struct ContactIntegrals {
   double energy = 0, gap = 0;
 };

@@ -10,7 +10,7 @@ namespace rpc::bound
 {
 
 /// Moves u so that the contact points of a rigid foundation lie nowhere in it; elsewhere it stays. Collective.
-///                                                                                                      doc/theory.md (13.3)
+///                                                                                                      doc/bounds.md (13.3)
 /// @param u  (owned dofs)
 void move_out(const ContactFacets &c, const mesh::Mesh &mesh, const HostView<double *> &u);
 

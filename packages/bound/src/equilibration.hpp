@@ -17,7 +17,7 @@ struct BoundaryTractions {
 /// The moments int t N_a over each facet of the known tractions with the element's functions: (facets, nodes of a facet, 2) [N].
 DeviceView<double ***> known_moments(const CellInput &in, const BoundaryTractions &boundary);
 
-/// Tractions in balance with the body force on each cell, from the moments of a Galerkin solution.     doc/theory.md (13.7)
+/// Tractions in balance with the body force on each cell, from the moments of a Galerkin solution.     doc/bounds.md (13.7)
 /// Collective.
 /// @param Q     nodal_forces() of the solution of the loads `boundary`
 /// @param mean  mean_moments() of it, to which the tractions are to be near

@@ -14,7 +14,7 @@ namespace rpc::bound
 RCP<Vector> vector_of(const HostView<double *> &u, const RCP<const Map> &map);
 HostView<double *> host_copy(const Vector &u);
 
-/// The Galerkin solution of given tractions.                                                             doc/theory.md (13.5)
+/// The Galerkin solution of given tractions.                                                             doc/bounds.md (13.5)
 struct Solved {
   RCP<const Vector> u;
   DeviceView<double ***> Q; ///< its nodal_forces()

@@ -13,7 +13,7 @@ namespace rpc::bound
 using EnergyTable = Kokkos::View<double ***, Kokkos::LayoutRight, Device>;
 
 /// Symmetric stresses without divergence on a reference cell, piecewise polynomials of degree k on the triangles or tetrahedra that the
-/// centre makes with its facets, with tractions that agree where these parts meet.                          doc/theory.md (13.6)
+/// centre makes with its facets, with tractions that agree where these parts meet.                          doc/bounds.md (13.6)
 ///
 /// A stress is a list of coefficients (part, component xx yy xy or xx yy zz yz xz xy, monomial of the place relative to the centre). In an
 /// affine cell x = F X + c it is the stress F s F^T / |det F|: continuity and divergence stay, and a traction times the size of its facet

@@ -7,7 +7,7 @@ namespace rpc::bound
 {
 
 /// Additive Schwarz in space, on tractions that are in balance on each cell without loads: those on the facets of a ring. They are one force and
-/// moment that all its facets hand on, and on each facet tractions without force and moment.               doc/theory.md (13.9)
+/// moment that all its facets hand on, and on each facet tractions without force and moment.               doc/bounds.md (13.9)
 class RingSolves
 {
 public:

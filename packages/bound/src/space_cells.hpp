@@ -10,7 +10,7 @@ namespace rpc::bound
 
 /// The energies of the kinds of cells by their tractions, outward, the inner stresses at their best:
 ///
-///     E_T(t) = t . A t/2 + b . t + const.                                                             doc/theory.md (13.8)
+///     E_T(t) = t . A t/2 + b . t + const.                                                             doc/bounds.md (13.8)
 struct SpaceForms {
   /// (kinds, tractions, tractions), each of which lies in one piece; it only steers the descent
   Kokkos::View<float ***, Kokkos::LayoutRight, Device> A;

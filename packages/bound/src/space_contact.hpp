@@ -21,7 +21,7 @@ struct SpacePoint {
   double fixed, acts;                       ///< 0 or 1: as contact::ContactNodes has it; whether friction acts
 };
 
-/// Friction along a contact side, whose limits s are given.                                            doc/theory.md (13.12)
+/// Friction along a contact side, whose limits s are given.                                            doc/bounds.md (13.12)
 /// Vectors have components along both axes of the side.
 struct SpaceFriction {
   bool acts = false;                            ///< else nothing below is there
@@ -52,7 +52,7 @@ struct SpaceContact {
   std::vector<OfTriangle> pressure;              ///< (facets) at the corners, as each facet has it [Pa]
 };
 
-/// A pressure that the law admits, linear on each facet, as fitted_pressure() in the plane.               doc/theory.md (13.4)
+/// A pressure that the law admits, linear on each facet, as fitted_pressure() in the plane.               doc/bounds.md (13.4)
 /// @param v  (facets) penetration at the corners [m]
 std::vector<OfTriangle> fitted_pressure(const SpaceContact &c, const std::vector<OfTriangle> &v);
 

@@ -17,7 +17,7 @@ struct SpaceTractions {
   AlongSide friction; ///< empty where there is none
 };
 
-/// Collective. @param u  (owned dofs)                                                                  doc/theory.md (13.3)
+/// Collective. @param u  (owned dofs)                                                                  doc/bounds.md (13.3)
 void move_out(const SpaceContact &c, const mesh::Mesh &mesh, const HostView<double *> &u);
 
 struct SpaceContactTerms {

@@ -104,7 +104,7 @@ struct AffineTetrahedron {
   }
 };
 
-/// s : C^-1 t in space, as compliance() in the plane.                                                     doc/theory.md (13.2)
+/// s : C^-1 t in space, as compliance() in the plane.                                                     doc/bounds.md (13.2)
 KOKKOS_INLINE_FUNCTION void compliance(const double lambda, const double mu, double (&S)[6][6])
 {
   const double a = lambda / (3 * lambda + 2 * mu);

@@ -8,7 +8,7 @@
 namespace rpc::bound
 {
 
-/// What is wanted of a traction on a contact side in space, a pressure or one along the side with two components.       doc/theory.md (13.4)
+/// What is wanted of a traction on a contact side in space, a pressure or one along the side with two components.       doc/bounds.md (13.4)
 struct WantedInSpace {
   int components = 1;
   std::array<std::vector<double>, 2> force; ///< (components; points) that it stands for [N]

@@ -8,7 +8,7 @@ namespace rpc::bound
 {
 
 /// Additive Schwarz on tractions that are in balance on each cell without loads: those on the spokes of a star. They are one force and
-/// moment that all its spokes hand on, and on each spoke tractions without force and moment.                 doc/theory.md (13.9)
+/// moment that all its spokes hand on, and on each spoke tractions without force and moment.                 doc/bounds.md (13.9)
 class StarSolves
 {
 public:

@@ -8,7 +8,7 @@
 namespace rpc::bound
 {
 
-/// What is wanted of a traction on a contact side, a pressure or one along the side.                    doc/theory.md (13.4)
+/// What is wanted of a traction on a contact side, a pressure or one along the side.                    doc/bounds.md (13.4)
 struct WantedTraction {
   std::vector<double> force;      ///< (points) that it stands for [N]
   std::vector<char> free;         ///< (points) whether it can act there

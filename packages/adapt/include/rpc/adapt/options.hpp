@@ -21,7 +21,7 @@ enum class NextMeshes {
 enum class ErrorBound {
   none,
   estimated, ///< by the recovered stress: an estimate, which may be too small
-  guaranteed ///< by stresses in equilibrium, where that is built; doc/theory.md, section 13
+  guaranteed ///< by stresses in equilibrium, where that is built; doc/bounds.md
 };
 
 struct AdaptOptions {

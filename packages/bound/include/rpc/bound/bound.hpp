@@ -16,7 +16,7 @@ struct ForceBound {
 };
 
 /// Bounds of the energy of the exact solution and of the error of a discrete one, without a constant that would have to be estimated.
-///                                                                                                  doc/theory.md, section 13
+///                                                                                                              doc/bounds.md
 struct EnergyBound {
   /// What J counts: with friction its work s |e| too, and for Coulomb's law with the limits s of this solution.            (13.12)
   enum class Of { energy, energy_and_friction, energy_and_fixed_friction } of = Of::energy;
