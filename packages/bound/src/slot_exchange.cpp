@@ -47,30 +47,24 @@ SlotExchange::SlotExchange(const mesh::Mesh &mesh, const HostView<LO **> &node, 
   rows_.of = DeviceView<LO **>("rpc::bound::rows_of_slots", facets, slots);
   const auto row = Kokkos::create_mirror_view(rows_.of);
   Kokkos::deep_copy(row, -1);
-  std::vector<int> counts(static_cast<std::size_t>(ranks) * ranks, 0); // of what a rank asks another one for
-  std::vector<GO> keys;
-  std::size_t rows = 0;
+  std::vector<int> counts(ranks);
+  std::vector<double> keys;
+  LO rows = 0;
   for (int r = 0; r < ranks; ++r) {
-    counts[static_cast<std::size_t>(own) * ranks + r] = static_cast<int>(wanted[r].size());
-    if (!wanted[r].empty()) from_.push_back({r, rows, wanted[r].size()});
-    for (const auto &at : place[r]) row(at[0], at[1]) = static_cast<LO>(rows++);
+    counts[r] = static_cast<int>(wanted[r].size());
+    for (const auto &at : place[r]) row(at[0], at[1]) = rows++;
     for (const Key &key : wanted[r]) keys.insert(keys.end(), key.begin(), key.end());
   }
   Kokkos::deep_copy(rows_.of, row);
-  counts = summed(*comm_, counts);
-  std::size_t asked = 0;
-  for (int r = 0; r < ranks; ++r) {
-    const std::size_t n = counts[static_cast<std::size_t>(r) * ranks + own];
-    if (n > 0) to_.push_back({r, asked, n});
-    asked += n;
-  }
-  const std::vector<GO> of_others = exchanged(keys, from_, to_, per_key);
+  exchange_.emplace(*comm_, counts);
+  const std::vector<double> of_others = exchange_->forward(keys, per_key);
+  const std::size_t asked = exchange_->num_received();
   served_ = DeviceView<LO *[2]>("rpc::bound::served_slots", asked);
   const auto served = Kokkos::create_mirror_view(served_);
   int missing = 0;
   for (std::size_t k = 0; k < asked; ++k) {
-    const GO *const key = of_others.data() + per_key * k;
-    const auto found = here.find({key[0], key[1], key[2], 0});
+    const double *const key = of_others.data() + per_key * k;
+    const auto found = here.find({static_cast<GO>(key[0]), static_cast<GO>(key[1]), static_cast<GO>(key[2]), 0});
     if (found == here.end()) {
       ++missing;
       continue;
@@ -83,25 +77,6 @@ SlotExchange::SlotExchange(const mesh::Mesh &mesh, const HostView<LO **> &node, 
   Kokkos::deep_copy(served_, served);
 }
 
-template <class T>
-std::vector<T> SlotExchange::exchanged(const std::vector<T> &sent, const std::vector<Share> &to,
-                                       const std::vector<Share> &from, const std::size_t width) const
-{
-  constexpr int tag = 7401;
-  std::vector<T> received(width * (from.empty() ? 0 : from.back().first + from.back().count));
-  std::vector<RCP<Teuchos::CommRequest<int>>> requests;
-  for (const Share &share : from)
-    requests.push_back(
-        Teuchos::ireceive(Teuchos::ArrayRCP<T>(received.data() + width * share.first, 0, width * share.count, false),
-                          share.rank, tag, *comm_));
-  for (const Share &share : to)
-    requests.push_back(
-        Teuchos::isend(Teuchos::ArrayRCP<const T>(sent.data() + width * share.first, 0, width * share.count, false),
-                       share.rank, tag, *comm_));
-  Teuchos::waitAll(*comm_, Teuchos::ArrayView<RCP<Teuchos::CommRequest<int>>>(requests));
-  return received;
-}
-
 DeviceView<double **> SlotExchange::fetched(const DeviceView<double **> &values) const
 {
   const std::size_t width = values.extent(1);
@@ -111,7 +86,7 @@ DeviceView<double **> SlotExchange::fetched(const DeviceView<double **> &values)
   std::vector<double> sent(here.extent(0) * width);
   for (std::size_t k = 0; k < here.extent(0); ++k)
     for (std::size_t q = 0; q < width; ++q) sent[width * k + q] = here(k, q);
-  const std::vector<double> all = exchanged(sent, to_, from_, width);
+  const std::vector<double> all = exchange_->back(sent, static_cast<int>(width));
   const DeviceView<double **> fetched("rpc::bound::fetched", width > 0 ? all.size() / width : 0, width);
   const auto to = Kokkos::create_mirror_view(fetched);
   for (std::size_t k = 0; k < to.extent(0); ++k)

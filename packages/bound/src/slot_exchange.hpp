@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "rpc/core/exchange.hpp"
 #include "rpc/fem/discretization.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace rpc::bound
@@ -33,19 +35,10 @@ public:
   DeviceView<double **> fetched(const DeviceView<double **> &values) const;
 
 private:
-  /// Rows that go to a rank, or come from it, one after the other.
-  struct Share {
-    int rank;
-    std::size_t first, count;
-  };
-  template <class T>
-  std::vector<T> exchanged(const std::vector<T> &sent, const std::vector<Share> &to, const std::vector<Share> &from,
-                           std::size_t width) const;
-
   RCP<const Comm> comm_;
   Rows rows_;
   DeviceView<LO *[2]> served_;
-  std::vector<Share> to_, from_;
+  std::optional<Exchange> exchange_; ///< of rows that this rank asks for; none on one rank
 };
 
 } // namespace rpc::bound
