@@ -143,6 +143,16 @@ TEST(ErrorBoundInSpace, CoversDisplacementsThatTheElementsRepresent)
   EXPECT_GT(s.bound->upper, fine.energy);
 }
 
+TEST(ErrorBoundInSpace, OfABodyThatNothingStrainsIsMissing)
+{
+  const Solution s =
+      run_scene(std::string(RPC_TEST_DECKS) + "/even_block_in_space.xml",
+                {"Traction->right->X=0", "Dirichlet->front->Z=0.00037", "Adapt->Error Bound=guaranteed"});
+  EXPECT_EQ(s.contact.total.max_pressure, 0);
+  ASSERT_TRUE(s.bound);
+  EXPECT_EQ(s.bound->missing, "nothing is strained but by rounding");
+}
+
 TEST(ErrorBoundInSpace, IsRefusedWithWhatIsCovered)
 {
   const auto refused = [](std::vector<std::string> assignments, const std::string &part) {
