@@ -4,7 +4,7 @@
 import json
 import unittest
 
-from rpc_run import RpcTestCase, run_all
+from rpc_run import RpcTestCase
 
 MATERIAL = "Material: {Young's Modulus: 1000.0, Poisson's Ratio: 0.3}"
 BLOCK = f"""block:

@@ -5,7 +5,7 @@ import math
 import struct
 import unittest
 
-from rpc_run import RANKS, SOURCE, RpcTestCase
+from rpc_run import SOURCE, RpcTestCase
 
 ROUGH = SOURCE / "input" / "rough.xml"
 COARSE = "--set=Mesh->Cells={16, 16, 8}"
