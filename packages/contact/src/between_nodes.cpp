@@ -154,9 +154,8 @@ struct SideSamples {
 
 /// What reading the gap at the nodes alone leaves open, of a facet or of several.                                 (3.16a)
 struct Misread {
-  double energy = 0, force = 0; // [J], [N], in 2D per m
-  double penetration = 0;       // the most [m]
-  double ends = 0;              // half of the facet if its nodes bear and a sample does not [m^(dim-1)]
+  double energy = 0, force = 0, penetration = 0; // [J], [N], in 2D per m; the most [m]
+  double ends = 0; // half of the facet if its nodes bear and a sample does not [m^(dim-1)]
 };
 
 /// Of facets that bear a pressure and within which the gap is far from what its nodes show of it: it jumps, or has a kink.
@@ -406,9 +405,8 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
     else
       squared = look_at_side(d, *sides[k], options[k], points, materials, u, static_cast<int>(k), least, open_by,
                              result, mine);
-    result.between.misread_energy += sum_all(comm, mine.misread_energy);
-    result.between.misread_force += sum_all(comm, mine.misread_force);
-    result.between.misread_ends += sum_all(comm, mine.misread_ends);
+    for (auto *const sum : {&BetweenNodes::misread_energy, &BetweenNodes::misread_force, &BetweenNodes::misread_ends})
+      result.between.*sum += sum_all(comm, mine.*sum);
     result.between.misread_penetration =
         std::max(result.between.misread_penetration, max_all(comm, mine.misread_penetration));
     result.between.smallest_gap = std::min(result.between.smallest_gap, min_all(comm, mine.smallest_gap));

@@ -263,7 +263,7 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
   } catch (const Error &error) { // on all ranks
     throw error_at(first.time, error, true);
   }
-  return run_steps<Solution>(task, after, *comm, listener, seconds, steps).value_or(Solution{});
+  return run_steps<Solution>(task, after.value_or(at_rest), *comm, listener, seconds, steps).value_or(Solution{});
 }
 
 Solution solve_on(const Task &task, const MadeMesh &made, const Solution *const previous, const Solution *const earlier,
