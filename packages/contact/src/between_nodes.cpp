@@ -405,7 +405,7 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
     else
       squared = look_at_side(d, *sides[k], options[k], points, materials, u, static_cast<int>(k), least, open_by,
                              result, mine);
-    for (auto *const sum : {&BetweenNodes::misread_energy, &BetweenNodes::misread_force, &BetweenNodes::misread_ends})
+    for (const auto sum : {&BetweenNodes::misread_energy, &BetweenNodes::misread_force, &BetweenNodes::misread_ends})
       result.between.*sum += sum_all(comm, mine.*sum);
     result.between.misread_penetration =
         std::max(result.between.misread_penetration, max_all(comm, mine.misread_penetration));

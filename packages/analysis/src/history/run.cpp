@@ -251,9 +251,9 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
   PhaseSeconds seconds;
   auto from = resumed(listener, seconds);
   const auto mesh = from ? from->discretization.mesh : make_mesh(task.mesh, comm, seconds);
-  const auto after = from ? std::optional<double>(from->last.time) : std::nullopt;
+  const double after = from ? from->last.time : no_step_before;
   Task first = task;
-  first.time = after.value_or(task.steps.times.front());
+  first.time = from ? after : task.steps.times.front();
   const auto problem = make_problem(first, mesh, seconds);
   LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver,
                       coarser_meshes(first, task.mesh, comm));
@@ -263,7 +263,7 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
   } catch (const Error &error) { // on all ranks
     throw error_at(first.time, error, true);
   }
-  return run_steps<Solution>(task, after.value_or(at_rest), *comm, listener, seconds, steps).value_or(Solution{});
+  return run_steps<Solution>(task, after, *comm, listener, seconds, steps).value_or(Solution{});
 }
 
 Solution solve_on(const Task &task, const MadeMesh &made, const Solution *const previous, const Solution *const earlier,
