@@ -357,7 +357,7 @@ Solution solve_steps_adaptively(const Task &task, const RCP<const Comm> &comm, c
 {
   analysis::PhaseSeconds seconds;
   auto from = analysis::resumed(listener, seconds);
-  const double after = from ? from->last.time : analysis::no_step_before;
+  const double after = from ? from->last.time : analysis::no_step_before();
   StepsOnMeshes steps(task, std::move(from), comm, listener);
   auto s = analysis::run_steps<Solution>(task, after, *comm, listener, seconds, steps);
   if (!s) return {};

@@ -36,7 +36,7 @@ DeviceView<unsigned char *> free_components(const SpaceInput &in, const Boundary
       "rpc::bound::tell_free_components", device_range(static_cast<LO>(served.extent(0))),
       KOKKOS_LAMBDA(const LO k) { told(k, 0) = free(served(k, 0)); });
   const DeviceView<double **> fetched = of_facets.fetched(told);
-  const SlotExchange::Rows row = of_facets.rows();
+  const SlotExchange::Rows &row = of_facets.rows();
   Kokkos::parallel_for(
       "rpc::bound::take_free_components", device_range(in.facets.size()), KOKKOS_LAMBDA(const LO f) {
         if (row(f, 0) >= 0) free(f) = static_cast<unsigned char>(fetched(row(f, 0), 0));

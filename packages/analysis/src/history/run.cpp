@@ -251,7 +251,7 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
   PhaseSeconds seconds;
   auto from = resumed(listener, seconds);
   const auto mesh = from ? from->discretization.mesh : make_mesh(task.mesh, comm, seconds);
-  const double after = from ? from->last.time : no_step_before;
+  const double after = from ? from->last.time : no_step_before();
   Task first = task;
   first.time = from ? after : task.steps.times.front();
   const auto problem = make_problem(first, mesh, seconds);

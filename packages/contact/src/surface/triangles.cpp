@@ -43,7 +43,7 @@ std::string shown_place(const Point &x)
 using Edges = std::map<std::pair<int, int>, std::size_t>;
 
 /// Triangles that are joined over edges.
-struct Part {
+struct ConnectedPart {
   std::vector<std::size_t> triangles;
   Bounds bounds = Bounds::empty();
   double six_volumes = 0; ///< < 0 where they look inwards
@@ -51,14 +51,14 @@ struct Part {
 };
 
 /// @param neighbours  (triangles, edges) the triangle beyond each edge
-std::vector<Part> parts_of(const Triangles &t, const std::vector<std::array<std::size_t, 3>> &neighbours)
+std::vector<ConnectedPart> parts_of(const Triangles &t, const std::vector<std::array<std::size_t, 3>> &neighbours)
 {
-  std::vector<Part> parts;
+  std::vector<ConnectedPart> parts;
   std::vector<char> seen(t.corners.size(), 0);
   for (std::size_t first = 0; first < t.corners.size(); ++first) {
     if (seen[first] != 0) continue;
     seen[first] = 1;
-    Part part;
+    ConnectedPart part;
     part.triangles = {first};
     for (std::size_t n = 0; n < part.triangles.size(); ++n) {
       const std::size_t triangle = part.triangles[n];
@@ -78,7 +78,7 @@ std::vector<Part> parts_of(const Triangles &t, const std::vector<std::array<std:
 }
 
 /// How often a part surrounds x, off its surface: 1 within, 0 outside; less that where it looks inwards.
-double times_around(const Triangles &t, const Part &part, const Point &x)
+double times_around(const Triangles &t, const ConnectedPart &part, const Point &x)
 {
   double angle =
       0; // solid, of the triangles seen from x: A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125
@@ -93,13 +93,13 @@ double times_around(const Triangles &t, const Part &part, const Point &x)
 }
 
 /// The first part that looks inwards and is no cavity of another one; none: null.
-const Part *part_inside_out(const Triangles &t, const std::vector<Part> &parts)
+const ConnectedPart *part_inside_out(const Triangles &t, const std::vector<ConnectedPart> &parts)
 {
-  for (const Part &part : parts) {
+  for (const ConnectedPart &part : parts) {
     if (!(part.six_volumes < -Rounding::place * part.sizes)) continue; // a fin without thickness has none
     const Point &x = t.points[t.corners[part.triangles.front()][0]];
     double around = 0;
-    for (const Part &other : parts)
+    for (const ConnectedPart &other : parts)
       if (&other != &part && !(other.bounds.nearest(x) > 0)) around += times_around(t, other, x);
     if (around < 0.5) return &part;
   }
@@ -144,10 +144,11 @@ std::string fault_of(const Triangles &t)
         other->second;
   }
   if (t.corners.empty()) return "there are no facets; name a file that has some";
-  const std::vector<Part> parts = parts_of(t, neighbours);
-  const double six_volumes = std::accumulate(parts.begin(), parts.end(), 0.,
-                                             [](const double sum, const Part &part) { return sum + part.six_volumes; });
-  const Part *const wrong = parts.size() > 1 ? part_inside_out(t, parts) : nullptr;
+  const std::vector<ConnectedPart> parts = parts_of(t, neighbours);
+  const double six_volumes =
+      std::accumulate(parts.begin(), parts.end(), 0.,
+                      [](const double sum, const ConnectedPart &part) { return sum + part.six_volumes; });
+  const ConnectedPart *const wrong = parts.size() > 1 ? part_inside_out(t, parts) : nullptr;
   if (wrong)
     return "the " + std::to_string(wrong->triangles.size()) + " facets of the part at " +
            shown_place(t.points[t.corners[wrong->triangles.front()][0]]) +

@@ -12,14 +12,18 @@
 namespace rpc::analysis
 {
 
-inline constexpr double no_step_before = -std::numeric_limits<double>::infinity(); ///< a time before that of all steps
+/// A time before that of all steps.
+inline double no_step_before()
+{
+  return -std::numeric_limits<double>::infinity();
+}
 
 /// The loop over the load steps of a run, on one mesh or each on meshes of its own. Where a step does not converge or an error ends it, the
 /// solution is that of the step before, with its `failure`; an error in the first step of all is thrown. An interrupted run leaves a
 /// checkpoint. Collective.
 ///
 /// @tparam Found  analysis::Solution, or what derives from it
-/// @param after   time of the step that the run goes on from; `no_step_before`: it begins with the first one
+/// @param after   time of the step that the run goes on from; `no_step_before()`: it begins with the first one
 /// @param spent   seconds of the run before the steps
 /// @param steps   what solves them:
 ///
@@ -61,7 +65,7 @@ std::optional<Found> run_steps(const Task &task, const double after, const Comm 
       if (listener.load_step && s->has_results() && !s->failure) listener.load_step(*s);
     } catch (const Error &error) { // on all ranks; what the steps before have found is not lost
       const StepRecord broken = steps.broken_off(t, one_line(error.what()));
-      if (!s) throw error_at(broken.time, error, after == no_step_before);
+      if (!s) throw error_at(broken.time, error, after == no_step_before());
       if (!solved) s->history.push_back(broken);
       s->failure = Failure{solved ? s->time : broken.time, broken.reason, error.code()};
     }
