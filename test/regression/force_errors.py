@@ -5,7 +5,7 @@ import json
 import math
 import unittest
 
-from rpc_run import RANKS, RpcTestCase
+from rpc_run import RANKS, WrittenDeckTestCase
 
 BAD_INPUT = 2
 GMSH, NESTED = "Meshes: gmsh", "Meshes: nested"
@@ -63,13 +63,7 @@ def written(deck, **words):
     return deck
 
 
-class ForceErrors(RpcTestCase):
-    def solve(self, name, text, *arguments, code=0):
-        path = self.folder / f"{name}.yaml"
-        path.write_text(text)
-        result = self.rpc(f"--input={path}", f"--output={name}", *arguments, code=code)
-        return result if code else json.loads((self.folder / name / f"{name}.json").read_text())
-
+class ForceErrors(WrittenDeckTestCase):
     def within(self, here, there):
         """The values lie no further apart than both bars."""
         lists = [entry["value"] if isinstance(entry["value"], list) else [entry["value"]] for entry in (here, there)]
@@ -157,7 +151,7 @@ class ForceErrors(RpcTestCase):
                  (written(PUNCH, TOP="X: 0.0, Y: -0.1, Rotation Z: 0.0").replace("Target Relative Error: TARGET", guaranteed), '"Rigid->top" holds its side rigid'),
                  (written(PUNCH, TOP="Force Y: -1.0").replace("Rigid", "Dirichlet").replace("Target Relative Error: TARGET", guaranteed), '"Dirichlet->top" is moved by a force')]
         for deck, words in decks:
-            self.expect_refusal(self.solve("refused", deck, code=BAD_INPUT), BAD_INPUT, [words])
+            self.refuse(deck, BAD_INPUT, [words])
 
 
 if __name__ == "__main__":
