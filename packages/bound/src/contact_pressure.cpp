@@ -121,13 +121,7 @@ ContactIntegrals contact_integrals(const int order, const OfFacet &v, const OfFa
   parts.integrate([&](const double x, const double w) {
     const contact::Foundation f{rigid ? law.limit[0] : std::max(0., limit(x)), law.rise, law.spring};
     const double deep = depth(x), p_here = std::max(0., pressure(x));
-    if (rigid && law.spring == 0) { // there is no penetration
-      sum.gap += w * p_here * std::max(0., -deep);
-      return;
-    }
-    const double energy = contact::foundation_energy(deep, f);
-    sum.energy += w * energy;
-    sum.gap += w * std::max(0., energy + contact::conjugate_energy(p_here, f) - p_here * deep);
+    sum.add(w, deep, p_here, f, rigid && law.spring == 0);
   });
   return sum;
 }

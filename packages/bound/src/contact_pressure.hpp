@@ -3,6 +3,7 @@
 
 #include "rpc/core/kokkos.hpp"
 #include "rpc/core/point.hpp"
+#include "side_terms.hpp"
 
 #include <array>
 #include <vector>
@@ -81,12 +82,7 @@ struct NormalLaw {
   double rise = 0, spring = 0;
 };
 
-/// Integrals over a facet of unit length of the energy of the law, psi(v) or s |e|, and of what the pair misses of it: psi(v) + psi*(p) - p v, or
-/// s |e| - q e.                                                                                         doc/bounds.md (13.11)
-struct ContactIntegrals {
-  double energy = 0, gap = 0;
-};
-/// v <= 0 where the foundation is rigid.
+/// Over a facet of unit length; v <= 0 where the foundation is rigid.
 /// @param p  Bernstein coefficients, those of an admissible pressure
 ContactIntegrals contact_integrals(int order, const OfFacet &v, const OfFacet &p, const NormalLaw &law);
 /// @param slip  at the nodes   @param traction, limit  Bernstein coefficients

@@ -12,19 +12,6 @@ namespace rpc::bound
 namespace
 {
 
-/// -1: it is another rank's.
-LO owned_node(const SidePoint &point, const mesh::Mesh &mesh)
-{
-  const GO lid = static_cast<GO>(point.gid) - mesh.owned_nodes->getMinGlobalIndex();
-  return lid >= 0 && lid < mesh.num_owned_nodes() ? static_cast<LO>(lid) : -1;
-}
-
-/// Whether the foundation gives way to nothing.
-bool is_rigid(const ContactFacets &c)
-{
-  return c.spring == 0 && !c.limit_of.empty() && contact::is_rigid(c.limit_of[0][0]);
-}
-
 using OfPoints = std::vector<std::array<double, 2>>;
 
 /// (points) A displacement at the points of a side, on all ranks.
@@ -80,7 +67,7 @@ std::vector<OfFacet> slips(const ContactFacets &c, const OfPoints &u)
 
 void move_out(const ContactFacets &c, const mesh::Mesh &mesh, const HostView<double *> &u)
 {
-  if (!is_rigid(c)) return;
+  if (!never_gives_way(c)) return;
   OfPoints at = at_points(c, mesh, u);
   const auto depth = [&](const int i) {
     const SidePoint &p = c.points[i];
@@ -115,7 +102,7 @@ ContactTerms contact_terms(const std::vector<ContactFacets> &sides, const mesh::
     if (c.friction.acts) t.friction = fitted_friction(c, e);
     std::vector<double> gap_of(c.facet.size(), 0.);
     for (std::size_t f = 0; f < c.facet.size(); ++f) {
-      if (is_rigid(c) && *std::max_element(v[f].begin(), v[f].end()) > 0)
+      if (never_gives_way(c) && *std::max_element(v[f].begin(), v[f].end()) > 0)
         terms.missing = "the body lies in a rigid foundation";
       ContactIntegrals sum = contact_integrals(c.order, v[f], t.pressure[f], {c.limit_of[f], c.rise, c.spring});
       if (c.friction.acts) {

@@ -136,7 +136,7 @@ AlongSide fitted_friction(const SpaceContact &c, const AlongSide &slip)
   return fitted_in_space(c, wanted);
 }
 
-TriangleIntegrals contact_integrals(const OfTriangle &v, const OfTriangle &p, const TriangleLaw &law)
+ContactIntegrals contact_integrals(const OfTriangle &v, const OfTriangle &p, const TriangleLaw &law)
 {
   const bool rigid = contact::is_rigid(*std::max_element(law.limit.begin(), law.limit.end()));
   PartsOfTriangle parts; // within which the integrands are polynomials of degree 2
@@ -145,27 +145,21 @@ TriangleIntegrals contact_integrals(const OfTriangle &v, const OfTriangle &p, co
     parts.end_at_roots_of(plus(v, -law.spring, law.limit));
     parts.end_at_roots_of(plus(p, -1, law.limit));
   }
-  TriangleIntegrals sum;
+  ContactIntegrals sum;
   parts.integrate([&](const Corner &x, const double w) {
     const contact::Foundation f{rigid ? law.limit[0] : value_at(law.limit, x), law.rise, law.spring};
     const double deep = value_at(v, x), pressure = std::max(0., value_at(p, x));
-    if (rigid && law.spring == 0) { // there is no penetration
-      sum.gap += w * pressure * std::max(0., -deep);
-      return;
-    }
-    const double energy = contact::foundation_energy(deep, f);
-    sum.energy += w * energy;
-    sum.gap += w * std::max(0., energy + contact::conjugate_energy(pressure, f) - pressure * deep);
+    sum.add(w, deep, pressure, f, rigid && law.spring == 0);
   });
   return sum;
 }
 
-TriangleIntegrals friction_integrals(const std::array<OfTriangle, 2> &slip, const std::array<OfTriangle, 2> &traction,
-                                     const OfTriangle &limit)
+ContactIntegrals friction_integrals(const std::array<OfTriangle, 2> &slip, const std::array<OfTriangle, 2> &traction,
+                                    const OfTriangle &limit)
 {
   constexpr int parts = 8; // along each side
   const auto length_at = [&](const Corner &x) { return std::hypot(value_at(slip[0], x), value_at(slip[1], x)); };
-  TriangleIntegrals sum;
+  ContactIntegrals sum;
   const auto product = [](const OfTriangle &x, const OfTriangle &y) { // the mean
     return ((x[0] + x[1] + x[2]) * (y[0] + y[1] + y[2]) + x[0] * y[0] + x[1] * y[1] + x[2] * y[2]) / 12;
   };

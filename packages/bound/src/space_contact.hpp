@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rpc/core/kokkos.hpp"
+#include "side_terms.hpp"
 
 #include <array>
 #include <vector>
@@ -67,16 +68,12 @@ struct TriangleLaw {
   double rise = 0, spring = 0;
 };
 
-/// Integrals over a facet of area 1 of the energy of the law and of what the pair misses of it, as in the plane.
-struct TriangleIntegrals {
-  double energy = 0, gap = 0;
-};
-/// v <= 0 where the foundation is rigid.
-TriangleIntegrals contact_integrals(const OfTriangle &v, const OfTriangle &p, const TriangleLaw &law);
+/// Over a facet of area 1; v <= 0 where the foundation is rigid.
+ContactIntegrals contact_integrals(const OfTriangle &v, const OfTriangle &p, const TriangleLaw &law);
 /// The energy is no smaller than int s |e|: of |e|, which is convex, its linear interpolant on parts of the facet is integrated. The difference of
 /// both integrals is exact.
 /// @param slip, traction  (axes) at the corners
-TriangleIntegrals friction_integrals(const std::array<OfTriangle, 2> &slip, const std::array<OfTriangle, 2> &traction,
-                                     const OfTriangle &limit);
+ContactIntegrals friction_integrals(const std::array<OfTriangle, 2> &slip, const std::array<OfTriangle, 2> &traction,
+                                    const OfTriangle &limit);
 
 } // namespace rpc::bound

@@ -13,25 +13,12 @@ namespace rpc::bound
 namespace
 {
 
-/// -1: it is another rank's.
-LO owned_node_of(const SpacePoint &point, const mesh::Mesh &mesh)
-{
-  const GO lid = static_cast<GO>(point.gid) - mesh.owned_nodes->getMinGlobalIndex();
-  return lid >= 0 && lid < mesh.num_owned_nodes() ? static_cast<LO>(lid) : -1;
-}
-
-/// Whether the foundation gives way to nothing.
-bool never_gives_way(const SpaceContact &c)
-{
-  return c.spring == 0 && !c.limit_of.empty() && contact::is_rigid(c.limit_of[0][0]);
-}
-
 /// (points) A displacement at the points of a side, on all ranks.
 std::vector<Point> displacements_of(const SpaceContact &c, const mesh::Mesh &mesh, const HostView<double *> &u)
 {
   std::vector<double> mine(3 * c.points.size(), 0.);
   for (std::size_t i = 0; i < c.points.size(); ++i) {
-    const LO node = owned_node_of(c.points[i], mesh);
+    const LO node = owned_node(c.points[i], mesh);
     for (int d = 0; d < 3 && node >= 0; ++d) mine[3 * i + d] = u(dof(3, node, d));
   }
   const std::vector<double> all = summed(mesh.comm(), mine);
@@ -89,7 +76,7 @@ void move_out(const SpaceContact &c, const mesh::Mesh &mesh, const HostView<doub
 {
   if (!never_gives_way(c)) return;
   for (const SpacePoint &p : c.points) {
-    const LO node = owned_node_of(p, mesh);
+    const LO node = owned_node(p, mesh);
     if (node < 0) continue;
     double deep = -p.free_gap, squared = 0;
     for (int d = 0; d < 3; ++d) {
@@ -117,9 +104,9 @@ SpaceContactTerms contact_terms(const std::vector<SpaceContact> &sides, const me
     for (std::size_t f = 0; f < c.facet.size(); ++f) {
       if (never_gives_way(c) && *std::max_element(v[f].begin(), v[f].end()) > 0)
         terms.missing = "the body lies in a rigid foundation";
-      TriangleIntegrals sum = contact_integrals(v[f], t.pressure[f], {c.limit_of[f], c.rise, c.spring});
+      ContactIntegrals sum = contact_integrals(v[f], t.pressure[f], {c.limit_of[f], c.rise, c.spring});
       if (c.friction.acts) {
-        const TriangleIntegrals rub =
+        const ContactIntegrals rub =
             friction_integrals({e[0][f], e[1][f]}, {t.friction[0][f], t.friction[1][f]}, c.friction.limit_of[f]);
         sum.energy += rub.energy;
         sum.gap += rub.gap;

@@ -51,11 +51,11 @@ SpaceContact square(const int n, const double limit, const Pressure &pressure)
 TEST(TriangleIntegrals, AreThoseOfHandAlgebra)
 {
   // v = 1 - 2 (y + z) in barycentric x, y, z: positive where x > 1/2, a quarter of the area, with the mean 1/3 there.
-  const TriangleIntegrals even = contact_integrals({1, -1, -1}, {2, 2, 2}, {{6, 6, 6}});
+  const ContactIntegrals even = contact_integrals({1, -1, -1}, {2, 2, 2}, {{6, 6, 6}});
   EXPECT_NEAR(even.energy, 6. / 12, 1e-14);
   // (xi - p) v+ + p v-: 4/12, and 2 (v+ - v) with the mean of v -1/3.
   EXPECT_NEAR(even.gap, 4. / 12 + 2 * (1. / 12 + 1. / 3), 1e-14);
-  const TriangleIntegrals off = contact_integrals({-1, -1, -2}, {2, 2, 2}, {{inf, inf, inf}});
+  const ContactIntegrals off = contact_integrals({-1, -1, -2}, {2, 2, 2}, {{inf, inf, inf}});
   EXPECT_EQ(off.energy, 0);
   EXPECT_NEAR(off.gap, 8. / 3, 1e-14);
   EXPECT_EQ(contact_integrals({0, 0, 0}, {2, 1, 2}, {{inf, inf, inf}}).gap, 0);
@@ -77,7 +77,7 @@ TEST(TriangleIntegrals, AreThoseOfManyPoints)
       yielding += rule.weight[q] * 4 * std::max(depth, 0.);
       gap += rule.weight[q] * ((4 - pressure) * std::max(depth, 0.) + pressure * std::max(-depth, 0.));
     }
-    const TriangleIntegrals exact = contact_integrals(v, p, {{4, 4, 4}});
+    const ContactIntegrals exact = contact_integrals(v, p, {{4, 4, 4}});
     EXPECT_NEAR(exact.energy, yielding, 1e-5);
     EXPECT_NEAR(exact.gap, gap, 1e-5);
   }
@@ -113,7 +113,7 @@ TEST(TriangleIntegrals, OfLawsAreThoseOfManyPoints)
       gap += rule.weight[q] * (stored + law.spring * pressure * pressure / 2 - pressure * deep +
                                (beyond > 0 ? beyond * beyond / (2 * law.rise) : 0));
     }
-    const TriangleIntegrals exact = contact_integrals(v, admissible, law);
+    const ContactIntegrals exact = contact_integrals(v, admissible, law);
     EXPECT_NEAR(exact.energy, energy, 1e-4 * energy);
     EXPECT_NEAR(exact.gap, gap, 1e-4 * gap);
   }
@@ -139,7 +139,7 @@ TEST(TriangleIntegrals, OfFrictionAreNoSmallerThanThoseOfManyPointsAndNear)
     energy += rule.weight[at] * limit * std::hypot(slip[0], slip[1]);
     work += rule.weight[at] * along;
   }
-  const TriangleIntegrals found = friction_integrals(e, q, s);
+  const ContactIntegrals found = friction_integrals(e, q, s);
   EXPECT_GE(found.energy, energy * (1 - 1e-6));
   EXPECT_LT(found.energy, 1.02 * energy);
   EXPECT_NEAR(found.gap, found.energy - work, 1e-6 * energy);
