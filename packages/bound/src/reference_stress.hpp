@@ -25,7 +25,7 @@ struct ReferenceStress {
   int monomials = 0; ///< (k + 1)(k + 2)/2 in the plane, (k + 1)(k + 2)(k + 3)/6 in space
   int tractions = 0; ///< 2 (k + 1) sides in the plane, 6 (k + 1)(k + 2) in space
   int inner = 0;     ///< inner stresses
-  int columns() const { return tractions + inner; }
+  KOKKOS_INLINE_FUNCTION int columns() const { return tractions + inner; }
   int coefficients() const { return dim * (dim + 1) / 2 * sides * monomials; }
 
   DeviceView<double **> stress; ///< (coefficients, columns)

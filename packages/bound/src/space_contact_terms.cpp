@@ -4,6 +4,7 @@
 #include "rpc/contact/law/foundation.hpp"
 #include "rpc/core/dofs.hpp"
 #include "rpc/core/parallel.hpp"
+#include "rpc/core/point.hpp"
 
 #include <algorithm>
 #include <cmath>

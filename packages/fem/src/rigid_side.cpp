@@ -7,6 +7,7 @@
 #include "rpc/core/parallel.hpp"
 #include "rpc/fem/elasticity.hpp"
 #include "rpc/fem/surface.hpp"
+#include "rpc/mesh/box.hpp"
 #include "tied.hpp"
 
 #include <algorithm>

@@ -14,7 +14,7 @@ struct BasisTable {
   DeviceView<double ***> gradient; ///< (points, nodes, dim of the element) by reference coordinates
   DeviceView<double *> weight;     ///< (points)
 
-  int num_points() const { return static_cast<int>(weight.extent(0)); }
+  KOKKOS_INLINE_FUNCTION int num_points() const { return static_cast<int>(weight.extent(0)); }
 };
 
 /// @param element  of cells, facets or edges
