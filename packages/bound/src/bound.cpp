@@ -87,7 +87,6 @@ double energy_product(const fem::Discretization &d, const fem::Materials &materi
 
 void require_covered(const analysis::Task &task)
 {
-  require_of_deck(!on_gpu, "its kernels did not end on a GPU when they were tried; a program without CUDA has it");
   require_of_deck(task.model.kinematics != fem::Kinematics::axisymmetric, "the body is axisymmetric");
   for (const auto &condition : task.model.dirichlet)
     require_of_deck(!condition.is_moved() && !condition.rigid,
