@@ -58,6 +58,7 @@ json to_json(const StepRecord &r, const ResultScope &scope)
                 {"energies", kept_numbers(analysis::energy_quantities, r.energies, scope)},
                 {"contact", to_json(r.contact, scope)},
                 {"body", kept_numbers(analysis::body_quantities, r.body, scope)},
+                {"patches", kept_numbers(contact::patch_quantities, r.patches, scope)},
                 {"side_forces", r.side_forces},
                 {"displacements", r.displacements},
                 {"reactions", r.reactions},
@@ -78,6 +79,7 @@ StepRecord record_from(const json &j, const ResultScope &scope)
   r.energies = energies_from(j.at("energies"), scope);
   r.contact = sums_from(j.at("contact"), scope);
   take_numbers(j.at("body"), analysis::body_quantities, r.body, scope);
+  if (j.contains("patches")) take_numbers(j.at("patches"), contact::patch_quantities, r.patches, scope);
   r.side_forces = j.at("side_forces").get<std::vector<std::array<double, 3>>>();
   r.displacements = j.at("displacements").get<std::vector<std::array<double, 3>>>();
   r.reactions = j.at("reactions").get<std::vector<std::array<double, 3>>>();

@@ -68,6 +68,7 @@ std::string heading(const Scene &scene, const int dim, const ResultScope &scope)
   write_names(text, count_columns(scope), scope);
   text << ",seconds,converged,reason";
   write_names(text, history_columns(analysis::body_quantities, scope), scope);
+  write_names(text, history_columns(contact::patch_quantities, scope), scope);
   text << '\n';
   return text.str();
 }
@@ -98,6 +99,7 @@ std::string row(const Scene &scene, const analysis::StepRecord &step, const int 
   write_values(text, count_columns(scope), step);
   text << ',' << step.seconds << ',' << (step.converged ? 1 : 0) << ',' << io::csv_quoted(step.reason);
   write_values(text, history_columns(analysis::body_quantities, scope), step.body);
+  write_values(text, history_columns(contact::patch_quantities, scope), step.patches);
   text << '\n';
   return text.str();
 }

@@ -109,6 +109,7 @@ void add_steps(nlohmann::ordered_json &json, const Solution &s, const ResultScop
     add_shown(entry, analysis::energy_quantities, step.energies, scope);
     add_shown(entry, analysis::body_quantities, step.body, scope);
     add_sums(entry, step.contact, scope, s.discretization.dim());
+    add_shown(entry, contact::patch_quantities, step.patches, scope);
     add_shown(entry, analysis::step_parts, step, scope);
     add_shown(entry, analysis::step_work, step, scope);
     entry["seconds"] = step.seconds;

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The benchmarks of rough surfaces run, the comparison with other programs also where these are missing."""
 import os
+import shutil
 import subprocess
 import sys
 import unittest
@@ -24,6 +25,19 @@ class RoughBenchmarks(RpcTestCase):
         self.assertEqual(done.stdout.count("3840 dofs, 256 contact nodes"), 2, done.stdout)
         self.assertEqual(done.stdout.count("  patches  "), 2, done.stdout)
         self.assertNotIn("NOT CONV", done.stdout)
+
+    @unittest.skipUnless(shutil.which("mpiexec"), "there is no mpiexec")
+    def test_the_large_layer_runs_on_two_ranks(self):
+        areas = []
+        for ranks in ("1", "2"):
+            os.environ["MPIEXEC"] = f"{sys.executable} -B {self.folder / 'launch.py'}"  # notes how it is called
+            (self.folder / "launch.py").write_text("import os, sys\nprint('rough_layer: launched as', *sys.argv[1:3], flush=True)\nos.execvp('mpiexec', ['mpiexec', *sys.argv[1:]])\n")
+            self.addCleanup(os.environ.pop, "MPIEXEC", None)
+            done = self.start("bash", FOLDER / "rough_layer.sh", f"--ranks={ranks}", os.path.abspath(PROGRAM), "8,8,4", self.folder / "layer")
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            self.assertEqual(done.stdout.count(f"launched as -n {ranks}"), 2, done.stdout)
+            areas.append([line for line in done.stdout.splitlines() if "in contact" in line])
+        self.assertEqual(areas[0], areas[1])
 
     @unittest.skipUnless(numpy, "python3 has no NumPy")
     def test_the_comparison_leaves_out_what_is_missing(self):

@@ -2,7 +2,7 @@
 """Random rough surfaces, pressed from the first touch to nearly full contact, let go, and slid.
 
     python3 rough.py --rpc=build/rpc [--seed=1] [--surfaces=12] [--cells=64,64,16] [--kinds=mirrored,pressed,forced,released,slid] [--first=0]
-                     [--only=K] [--jobs=2] [--keep=DIR]
+                     [--only=K] [--jobs=2] [--keep=DIR] [--seconds=S] [--folder=DIR] [--seen-as=DIR]
 
 Surface K is self-affine, of the seed seed + K. The kinds take turns; E* = 1 but for the kinds with a Poisson's ratio of their own.
 
@@ -22,6 +22,10 @@ acts along the mean plane's normal or along the normals of the surface.
 Told are Newton steps and linear iterations of the load steps, those on coarser meshes left out, and the share of the side that touches. A surface fails if
 its run does not end as it should, or a load step takes more than 20 Newton steps (of a step that was divided, in each of its parts on the average). The exit
 code is 1 if a surface failed, or the median of Newton steps of load steps is above 8.
+
+The program may be several words, such as "mpiexec -n 2 build/rpc" or "chroot DIR /rpc", whose files then lie in a folder that it sees under another name:
+--folder=DIR/tmp --seen-as=/tmp. Where commands have a time limit, --seconds=S starts no surface later than that; the number to go on with, --first, is told.
+Takes no packages of Python.
 """
 import argparse
 import concurrent.futures
@@ -32,11 +36,13 @@ import os
 import pathlib
 import random
 import re
+import shlex
 import shutil
 import statistics
 import subprocess
 import sys
 import tempfile
+import time
 
 from friction_coefficients import written
 
@@ -137,9 +143,13 @@ def starts(row, name):
     return float(next(value for key, value in row.items() if key.startswith(name)))
 
 
-def judge(rpc, seed, number, cells, kinds, keep):
-    """(complaint or None, what happened, Newton steps of the load steps)"""
-    folder = pathlib.Path(tempfile.mkdtemp(prefix="rpc_rough_"))
+def judge(options, number, cells, kinds):
+    """(complaint or None, what happened, Newton steps of the load steps); None where it is too late to start"""
+    if time.monotonic() > options.start + options.seconds:
+        return None
+    seed, keep = options.seed, options.keep
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="rpc_rough_", dir=options.folder))
+    inside = pathlib.PurePosixPath(options.seen_as) / folder.name if options.seen_as else folder
     kind = kinds[number % len(kinds)]
     try:
         if kind == "mirrored":
@@ -148,7 +158,7 @@ def judge(rpc, seed, number, cells, kinds, keep):
         else:
             scene, given = drawn(kind, seed, number, cells)
         given["Seed"] = seed + number
-        made = subprocess.run([rpc, f"--make-surface={folder / 'made.npy'}"] + [f"--set={name}={value}" for name, value in given.items()], capture_output=True, text=True, check=True)
+        made = subprocess.run([*options.rpc, f"--make-surface={inside / 'made.npy'}"] + [f"--set={name}={value}" for name, value in given.items()], capture_output=True, text=True, check=True)
         heights = [float(h) for h in re.search(r"heights from (\S+) to (\S+),", made.stdout).groups()]
         if kind == "mirrored":
             share = YIELDS[number // len(kinds) % len(YIELDS)]
@@ -158,7 +168,7 @@ def judge(rpc, seed, number, cells, kinds, keep):
             of, area = periodic_deck(kind, scene, cells, heights, "made.npy"), 1
             told = ", ".join(f"{name} {value:.3g}" for name, value in {**scene, **given}.items())
         (folder / "rough.yaml").write_text("rough:\n" + written(of))
-        result = subprocess.run([rpc, f"--input={folder / 'rough.yaml'}", f"--output={folder}"], capture_output=True, text=True, errors="replace", check=False, stdin=subprocess.DEVNULL)
+        result = subprocess.run([*options.rpc, f"--input={inside / 'rough.yaml'}", f"--output={inside}"], capture_output=True, text=True, errors="replace", check=False, stdin=subprocess.DEVNULL)
         if result.returncode != 0:
             return f"{kind}, {told}: exit {result.returncode}: {result.stderr.strip()[-300:]}", "", []
         summary = json.loads((folder / "rough.json").read_text())
@@ -190,20 +200,32 @@ def main():
     parser.add_argument("--only", type=int, help="number of the only surface")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--keep", help="folder for the files of all surfaces")
+    parser.add_argument("--seconds", type=float, default=math.inf, help="after which no surface is started")
+    parser.add_argument("--folder", help="for the files of a run, in place of the system's folder for temporary ones")
+    parser.add_argument("--seen-as", help="what the program calls that folder")
     options = parser.parse_args()
-    rpc, failed, counts = os.path.abspath(options.rpc), 0, []
+    if options.seen_as and not options.folder:
+        parser.error("--seen-as takes --folder, which it names anew")
+    words = shlex.split(options.rpc)
+    options.rpc = [os.path.abspath(words[0])] if len(words) == 1 else words
+    options.start, failed, counts, done = time.monotonic(), 0, [], 0
     cells = [int(n) for n in options.cells.split(",")]
     kinds = options.kinds.split(",")
     if unknown := [kind for kind in kinds if kind not in KINDS]:
         parser.error(f"--kinds: there is no kind {unknown[0]}; there are {', '.join(KINDS)}")
     numbers = range(options.first, options.first + options.surfaces) if options.only is None else [options.only]
     with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
-        for number, (complaint, what, newton) in zip(numbers, pool.map(lambda k: judge(rpc, options.seed, k, cells, kinds, options.keep), numbers)):
+        for number, judged in zip(numbers, pool.map(lambda k: judge(options, k, cells, kinds), numbers)):
+            if judged is None:
+                print(f"{options.seconds:g} s are over; go on with --first={number}")
+                break
+            complaint, what, newton = judged
+            done += 1
             failed += complaint is not None
             counts += newton
             print(f"{number}: {'FAILED ' + complaint if complaint else what}", flush=True)
     median = statistics.median(counts) if counts else 0
-    print(f"{failed} of {len(numbers)} failed; Newton steps of {len(counts)} load steps: median {median:g}, most {max(counts, default=0)}")
+    print(f"{failed} of {done} failed; Newton steps of {len(counts)} load steps: median {median:g}, most {max(counts, default=0)}")
     return 1 if failed or median > MOST_MEDIAN else 0
 
 

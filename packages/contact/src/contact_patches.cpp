@@ -106,6 +106,7 @@ ContactPatches patches_of(const PointsOfSide &points, const std::vector<GO> &fac
     patches.mean_gap += points.weight[i] * points.distance[i];
     patches.max_pressure = std::max(patches.max_pressure, points.pressure[i]);
   }
+  patches.whole = whole;
   if (whole > 0) patches.mean_gap /= whole;
   for (std::size_t i = 0; i < points.node.size(); ++i) {
     if (!(points.pressure[i] > 0)) continue;
@@ -116,6 +117,20 @@ ContactPatches patches_of(const PointsOfSide &points, const std::vector<GO> &fac
 }
 
 } // namespace
+
+PatchCount counted(const std::vector<ContactPatches> &sides)
+{
+  PatchCount all;
+  double whole = 0;
+  for (const ContactPatches &side : sides) {
+    all.count += static_cast<double>(side.size.size());
+    if (!side.size.empty()) all.largest = std::max(all.largest, side.size.front());
+    all.mean_gap += side.whole * side.mean_gap;
+    whole += side.whole;
+  }
+  if (whole > 0) all.mean_gap /= whole;
+  return all;
+}
 
 std::vector<ContactPatches> contact_patches(const mesh::Mesh &mesh, const std::vector<const mesh::Side *> &sides,
                                             const ContactNodes &points, const ContactResult &result)

@@ -3,9 +3,11 @@
 
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/parallel.hpp"
+#include "rpc/mesh/box.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace rpc::fem
@@ -164,6 +166,114 @@ std::vector<LO> examples_of(const mesh::Mesh &mesh, const DeviceView<signed char
   return examples;
 }
 
+/// Cells of one direction of a box sorted by their lengths.
+struct LengthClasses {
+  DeviceView<double *> ends; // (cells + 1)  [m]
+  DeviceView<int *> of_cell; // (cells)
+  int count = 0;
+
+  /// @param rounding  up to which lengths are equal [m]
+  static LengthClasses of(const std::vector<double> &ends, const double rounding)
+  {
+    std::vector<double> lengths; // of the classes
+    std::vector<int> of_cell;
+    for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+      const double length = ends[k + 1] - ends[k];
+      const auto alike = std::find_if(lengths.rbegin(), lengths.rend(),
+                                      [&](const double other) { return std::abs(length - other) <= rounding; });
+      of_cell.push_back(static_cast<int>(lengths.rend() - alike) - 1);
+      if (alike != lengths.rend()) continue;
+      of_cell.back() = static_cast<int>(lengths.size());
+      lengths.push_back(length);
+    }
+    return {device_values(ends, "rpc::fem::ends_of_cells"), device_values(of_cell, "rpc::fem::class_of_length"),
+            static_cast<int>(lengths.size())};
+  }
+  KOKKOS_INLINE_FUNCTION int at(const double x) const
+  {
+    LO first = 0, last = static_cast<LO>(of_cell.extent(0)) - 1;
+    while (first < last) {
+      const LO middle = (first + last + 1) / 2;
+      if (ends(middle) <= x)
+        first = middle;
+      else
+        last = middle - 1;
+    }
+    return of_cell(first);
+  }
+};
+
+/// Kinds of the cells of a graded box: by the lengths of their sides, and which part of a cell they are.
+template <int Dim>
+struct KindByLengths {
+  DeviceView<double **> coords;      // (overlap nodes, Dim)  [m]  in
+  DeviceView<LO **> cells;           // (cells, nodes)             in, rows of coords
+  LengthClasses along[3];            //                            in
+  int parts;                         //                            in
+  DeviceView<signed char *> of_cell; // (cells)                    out
+  DeviceView<LO *> example;          // (kinds) the first cell     inout
+
+  KOKKOS_FUNCTION void operator()(const LO cell) const
+  {
+    int kind = 0;
+    for (int d = 0; d < Dim; ++d) {
+      double low = coords(cells(cell, 0), d), high = low;
+      for (std::size_t a = 1; a < cells.extent(1); ++a) {
+        const double x = coords(cells(cell, a), d);
+        low = x < low ? x : low;
+        high = x > high ? x : high;
+      }
+      kind = kind * along[d].count + along[d].at(0.5 * (low + high));
+    }
+    kind = kind * parts + cell % parts;
+    of_cell(cell) = static_cast<signed char>(kind);
+    Kokkos::atomic_fetch_min(&example(kind), cell);
+  }
+};
+
+/// A cell of each kind of this rank's part of a graded box, of which each layer has a kind of its own; none where there are too many.
+/// @param of_cell  (cells) <- their kinds
+template <int Dim>
+std::vector<LO> examples_of_layers(const mesh::Mesh &mesh, const DeviceView<signed char *> &of_cell)
+{
+  constexpr LO most_kinds = std::numeric_limits<signed char>::max();
+  const LO num_cells = mesh.num_cells();
+  KindByLengths<Dim> kernel{mesh.coords, mesh.places(), {}, parts_of_cell(mesh.element), of_cell, {}};
+  LO kinds = kernel.parts;
+  double farthest = 0;
+  for (int d = 0; d < Dim; ++d)
+    farthest = larger(farthest, larger(magnitude(mesh.box->lower[d]), magnitude(mesh.box->upper[d])));
+  const double rounding = relative_rounding * farthest;
+  for (int d = 0; d < Dim; ++d) {
+    if (!(rounding <= 1e-10 * mesh.box->node_distance(d))) return {};
+    kernel.along[d] = LengthClasses::of(mesh::cell_ends(*mesh.box, d), rounding);
+    kinds *= kernel.along[d].count;
+    if (kinds > most_kinds) return {};
+  }
+  kernel.example = DeviceView<LO *>("rpc::fem::examples_of_layers", kinds);
+  Kokkos::deep_copy(kernel.example, num_cells);
+  Kokkos::parallel_for("rpc::fem::kinds_of_layers", device_range(num_cells), kernel);
+  const auto found = to_host(kernel.example);
+  std::vector<LO> examples;
+  std::vector<signed char> present(kinds, unknown);
+  for (LO kind = 0; kind < kinds; ++kind) {
+    if (found(kind) == num_cells) continue;
+    present[kind] = static_cast<signed char>(examples.size());
+    examples.push_back(found(kind));
+  }
+  const auto renumbered = device_values(present, "rpc::fem::present_kinds");
+  Kokkos::parallel_for(
+      "rpc::fem::number_kinds", device_range(num_cells),
+      KOKKOS_LAMBDA(const LO cell) { of_cell(cell) = renumbered(of_cell(cell)); });
+  Kokkos::fence();
+  return examples;
+}
+
+bool is_graded(const mesh::Mesh &mesh)
+{
+  return mesh.box && (mesh.box->graded(0) || mesh.box->graded(1) || mesh.box->graded(2));
+}
+
 } // namespace
 
 CongruentCells congruent_cells(const mesh::Mesh &mesh)
@@ -171,7 +281,9 @@ CongruentCells congruent_cells(const mesh::Mesh &mesh)
   const DeviceView<signed char *> of_cell(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::kind_of_cell"),
                                           mesh.num_cells());
   Kokkos::deep_copy(of_cell, unknown);
-  const std::vector<LO> examples = examples_of(mesh, of_cell);
+  const std::vector<LO> examples = !is_graded(mesh)  ? examples_of(mesh, of_cell)
+                                   : mesh.dim() == 2 ? examples_of_layers<2>(mesh, of_cell)
+                                                     : examples_of_layers<3>(mesh, of_cell);
   const std::vector<double> mine = shapes_of(mesh, examples),
                             shared = shapes_of_all(mesh.comm(), mine, mesh.element.num_nodes() * mesh.dim() + 1);
   CongruentCells kinds;

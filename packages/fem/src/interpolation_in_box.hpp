@@ -3,10 +3,13 @@
 
 #include "interpolation_rows.hpp"
 #include "offsets.hpp"
+#include "rpc/core/device_values.hpp"
 #include "rpc/mesh/box_grid.hpp"
 #include "rpc/mesh/box_parts.hpp"
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 /// Interpolation between two divisions of one box: a node's indices tell its cell, and any rank knows the cell's nodes. No search, and
 /// no questions to other ranks. Private to interpolation().
@@ -35,11 +38,38 @@ struct BoxAxis {
   }
 };
 
+/// Where the nodes of one division of a box lie in the cells of another, along a direction in which one of them is graded.
+struct GradedAxis {
+  DeviceView<GO *> cell;       // (nodes) the lower one of two that share a place but for the first
+  DeviceView<double *> within; // (nodes) from 0 to 1
+
+  bool empty() const { return cell.extent(0) == 0; }
+  static GradedAxis of(const mesh::BoxOptions &from, const mesh::BoxOptions &to, const int direction)
+  {
+    const auto cells = mesh::cell_ends(from, direction), nodes = mesh::cell_ends(to, direction);
+    const int order = to.element.order_along(direction);
+    const auto last = static_cast<GO>(cells.size()) - 2;
+    std::vector<GO> cell;
+    std::vector<double> within;
+    for (GO node = 0; node <= to.intervals(direction); ++node) {
+      const auto begin = static_cast<std::size_t>(node / order);
+      const double part = static_cast<double>(node % order) / order;
+      const double x = part > 0 ? (1 - part) * nodes[begin] + part * nodes[begin + 1] : nodes[begin];
+      const GO above = std::upper_bound(cells.begin(), cells.end(), x) - cells.begin();
+      cell.push_back(std::clamp<GO>(above - 1, 0, last));
+      const double at = cells[cell.back()], length = cells[cell.back() + 1] - at;
+      within.push_back(std::clamp((x - at) / length, 0., 1.));
+    }
+    return {device_values(cell, "rpc::fem::graded_cell"), device_values(within, "rpc::fem::within_graded_cell")};
+  }
+};
+
 /// A node of one box in the cells of another division of it.
 template <int Dim>
 struct BetweenBoxes {
   BoxAxis from[3], to[3];
-  double ratio[3]; // of the lengths in `from`'s unit over those in `to`'s: exact powers of 2 for halved boxes
+  GradedAxis graded[3]; // empty where neither is graded
+  double ratio[3];      // of the lengths in `from`'s unit over those in `to`'s: exact powers of 2 for halved boxes
 
   BetweenBoxes(const mesh::BoxOptions &from_box, const mesh::BoxOptions &to_box)
   {
@@ -47,14 +77,31 @@ struct BetweenBoxes {
       from[d] = {from_box.cells[d], double(from_box.element.order_along(d)), from_box.last_in(d)};
       to[d] = {to_box.cells[d], double(to_box.element.order_along(d)), to_box.last_in(d)};
       ratio[d] = from[d].length() / to[d].length();
+      if (from_box.graded(d) || to_box.graded(d)) graded[d] = GradedAxis::of(from_box, to_box, d);
     }
   }
   /// @param[out] within  place in the cell, from 0 to 1
   KOKKOS_INLINE_FUNCTION mesh::Index cell_of(const mesh::Index &node, double (&within)[Dim]) const
   {
     mesh::Index cell{};
-    for (int d = 0; d < Dim; ++d) cell[d] = from[d].cell_at(to[d].at(node[d]) * ratio[d], within[d]);
+    for (int d = 0; d < Dim; ++d) {
+      if (graded[d].cell.extent(0) > 0) {
+        cell[d] = graded[d].cell(node[d]);
+        within[d] = graded[d].within(node[d]);
+      } else {
+        cell[d] = from[d].cell_at(to[d].at(node[d]) * ratio[d], within[d]);
+      }
+    }
     return cell;
+  }
+  /// The cells that hold the nodes from first to last, on the host.
+  std::pair<GO, GO> cells_along(const int d, const GO first, const GO last) const
+  {
+    double within = 0;
+    if (graded[d].empty())
+      return {from[d].cell_at(to[d].at(first) * ratio[d], within), from[d].cell_at(to[d].at(last) * ratio[d], within)};
+    const auto cell = to_host(graded[d].cell);
+    return {cell(first), cell(last)};
   }
 };
 
@@ -253,13 +300,9 @@ std::pair<RowsInBox<Dim, Elements>, RCP<const Map>> rows_in_box(const Elements &
   mesh::Block cells = grid.cells();
   if (rows.rows.size() == 0) cells.end = {};
   for (int d = 0; d < Dim && cells.size() > 0; ++d) { // one more at both ends, whatever the rounding
-    double within = 0;
-    const BoxAxis &axis = rows.boxes.from[d];
-    const auto cell_of = [&](const GO node) {
-      return axis.cell_at(rows.boxes.to[d].at(node) * rows.boxes.ratio[d], within);
-    };
-    cells.begin[d] = std::max<GO>(0, cell_of(rows.rows.begin[d]) - 1);
-    cells.end[d] = std::min<GO>(axis.cells, cell_of(rows.rows.end[d] - 1) + 2);
+    const auto [first, last] = rows.boxes.cells_along(d, rows.rows.begin[d], rows.rows.end[d] - 1);
+    cells.begin[d] = std::max<GO>(0, first - 1);
+    cells.end[d] = std::min<GO>(rows.boxes.from[d].cells, last + 2);
   }
   rows.around = grid.nodes_of(cells);
   const std::vector<GO> others = find_others(rows, to.num_owned_nodes());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/mesh/box.hpp"
 
+#include "rpc/core/device_values.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/gpu_memory.hpp"
 #include "rpc/core/memory.hpp"
@@ -105,6 +106,7 @@ void number_nodes(Numbering &numbering, const LO num_places)
 
 void fill_coords(const Numbering &n, const BoxOptions &options, const DeviceView<double **> &coords)
 {
+  Kokkos::Array<DeviceView<double *>, 3> ends{};
   Kokkos::Array<double, 3> lower{}, upper{}, last_cell{}, last_length{}, orders{};
   const int dim = options.element.dim;
   for (int d = 0; d < dim; ++d) {
@@ -113,12 +115,19 @@ void fill_coords(const Numbering &n, const BoxOptions &options, const DeviceView
     upper[d] = options.upper[d];
     last_cell[d] = options.cells[d] - 1;
     last_length[d] = options.last_in(d);
+    if (options.graded(d)) ends[d] = device_values(options.ends[d], "rpc::mesh::cell_ends");
   }
   Kokkos::parallel_for(
       "rpc::mesh::box_coords", device_range(static_cast<LO>(coords.extent(0))), KOKKOS_LAMBDA(const LO lid) {
         const Index at = n.node_at(lid);
         for (int d = 0; d < dim; ++d) { // both ends exact
           const double order = orders[d];
+          if (ends[d].extent(0) > 0) {
+            const GO nodes = static_cast<GO>(order), cell = at[d] / nodes;
+            const double within = static_cast<double>(at[d] % nodes) / order;
+            coords(lid, d) = within > 0 ? (1 - within) * ends[d](cell) + within * ends[d](cell + 1) : ends[d](cell);
+            continue;
+          }
           const double beyond = at[d] - order * last_cell[d]; // nodes in the last cell
           const double along = beyond > 0 ? order * last_cell[d] + last_length[d] * beyond : at[d];
           const double t = along / (order * (last_cell[d] + last_length[d]));
@@ -241,6 +250,8 @@ void require_memory(const BoxOptions &options, const GO nodes_of_rank, const GO 
   throw_if_any(comm, ExitCode::bad_input, refusal);
 }
 
+constexpr double least_ratio = 1e-4; // of the last cell over the first one
+
 } // namespace
 
 void add_box_parameters(Teuchos::ParameterList &valid)
@@ -249,6 +260,9 @@ void add_box_parameters(Teuchos::ParameterList &valid)
   valid.set("Upper", Array<double>(Teuchos::tuple(1., 1.)),
             "Upper corner of the box, above the lower one in each direction [m].");
   valid.set("Cells", Array<int>(Teuchos::tuple(8, 8)), "Number of cells in each direction, > 0.");
+  valid.set("Expansion Ratio", Array<double>(Teuchos::tuple(1., 1.)),
+            "Length of the last cell over that of the first in each direction, from 1e-4 to 1e4: lengths of the cells "
+            "are in geometric progression from the lower to the upper end. 1: equal cells.");
   set_words(
       valid, "Element", {"Q1", "Q2", "P1", "P2"},
       "Element of the box: `Q1`, `Q2` (quadrilaterals, in 3D hexahedra), `P1`, `P2` (two triangles to a cell, in 3D "
@@ -282,6 +296,10 @@ BoxOptions box_options(const Teuchos::ParameterList &list)
     require_length("Lower", dim, "\"Upper\" and \"Cells\"", options.upper.size());
   require_length("Upper", options.upper.size(), "\"Lower\"", dim);
   require_length("Cells", options.cells.size(), "\"Lower\" and \"Upper\"", dim);
+  if (!list.getEntry("Expansion Ratio").isDefault()) {
+    options.expansion = list.get<Array<double>>("Expansion Ratio").toVector();
+    require_length("Expansion Ratio", options.expansion.size(), "\"Lower\" and \"Upper\"", dim);
+  }
   double nodes = 1;
   options.element = parse_element(list.get<std::string>("Element"), static_cast<int>(dim));
   for (std::size_t d = 0; d < dim; ++d) {
@@ -296,7 +314,16 @@ BoxOptions box_options(const Teuchos::ParameterList &list)
                                                                  << least_size << " to " << greatest_size
                                                                  << " [m] in each direction, got " << size
                                                                  << " in direction " << d + 1);
-    const double spacing = size / (double(options.cells[d]) * options.element.order);
+    const double ratio = options.expansion_in(static_cast<int>(d));
+    RPC_REQUIRE(ratio >= least_ratio && ratio <= 1 / least_ratio, "deck: \"Mesh->Expansion Ratio\" must be from "
+                                                                      << least_ratio << " to " << 1 / least_ratio
+                                                                      << " in each direction, got " << ratio
+                                                                      << " in direction " << d + 1);
+    RPC_REQUIRE(ratio == 1 || options.cells[d] > 1,
+                "deck: \"Mesh->Expansion Ratio\" must be 1 in directions of one cell, got " << ratio << " in direction "
+                                                                                            << d + 1);
+    const double mean = size / (double(options.cells[d]) * options.element.order);
+    const double spacing = mean * std::min({1., ratio, 1 / ratio});
     const double farthest = std::max(std::abs(options.lower[d]), std::abs(options.upper[d]));
     RPC_REQUIRE(spacing >= 1e-12 * farthest,
                 "deck: \"Mesh->Cells\": nodes must be at least 1e-12 times as far apart as "
@@ -304,6 +331,7 @@ BoxOptions box_options(const Teuchos::ParameterList &list)
                     << spacing << " and " << farthest << " [m] in direction " << d + 1);
     nodes *= double(options.cells[d]) * options.element.order + 1;
   }
+  grade(options);
   const auto &repeats = list.get<std::string>("Periodic");
   for (const auto &[word, directions] : periodic_words)
     if (repeats == word) options.periodic = directions;
@@ -316,6 +344,9 @@ BoxOptions box_options(const Teuchos::ParameterList &list)
     const char name = "XYZ"[d];
     RPC_REQUIRE(d < dim, "deck: \"Mesh->Periodic\" names " << name << ", which a box in the plane does not have, got \""
                                                            << repeats << "\"");
+    RPC_REQUIRE(!options.graded(static_cast<int>(d)),
+                "deck: \"Mesh->Expansion Ratio\" must be 1 in directions in which the box is periodic, got "
+                    << options.expansion[d] << " in direction " << d + 1);
     RPC_REQUIRE(options.cells[d] >= fewest,
                 "deck: \"Mesh->Cells\" must be >= " << fewest << " in direction " << d + 1
                                                     << ", in which the box is periodic, got " << options.cells[d]);

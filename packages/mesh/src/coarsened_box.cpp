@@ -35,6 +35,38 @@ double shortest_distance(const BoxOptions &options, bool (*const counts)(const B
   return shortest;
 }
 
+/// Neighbouring cells become one in pairs where both are short. One that is left over before longer ones stays; at the end of the box it joins the last pair.
+/// @param ends  where cells end   @param longest  a cell that is short may be
+std::vector<double> joined_in_pairs(const std::vector<double> &ends, const double longest)
+{
+  const std::size_t cells = ends.size() - 1;
+  const auto is_short = [&](const std::size_t cell) { return cell < cells && ends[cell + 1] - ends[cell] <= longest; };
+  std::vector<double> kept{ends[0]};
+  for (std::size_t cell = 0; cell < cells;) {
+    const bool pair = is_short(cell) && is_short(cell + 1), three = pair && cell + 3 == cells && is_short(cell + 2);
+    cell += three ? 3 : pair ? 2 : 1;
+    kept.push_back(ends[cell]);
+  }
+  return kept;
+}
+
+/// The same of cells that become longer or shorter: those left over lie among the longer ones.
+void join_short(const int d, const double longest, BoxOptions &coarse)
+{
+  std::vector<double> &ends = coarse.ends[d];
+  const std::size_t last = ends.size() - 1;
+  const bool shorter = ends[last] - ends[last - 1] < ends[1] - ends[0];
+  const auto turn = [&ends] {
+    std::reverse(ends.begin(), ends.end());
+    for (double &x : ends) x = -x;
+  };
+  if (shorter) turn();
+  ends = joined_in_pairs(ends, longest);
+  if (shorter) turn();
+  coarse.cells[d] = static_cast<int>(ends.size()) - 1;
+  if (coarse.cells[d] == 1) ends.clear();
+}
+
 /// Half as many cells in a direction.
 void halve(const int d, const BoxOptions &options, BoxOptions &coarse)
 {
@@ -42,8 +74,8 @@ void halve(const int d, const BoxOptions &options, BoxOptions &coarse)
   coarse.last[d] = (options.cells[d] % 2 + 1 + options.last_in(d)) / 2; // of the last two or three
 }
 
-/// Order 1 in these directions; where it is that already, half as many cells.
-BoxOptions coarsened_along(const Directions &directions, const BoxOptions &options)
+/// Order 1 in these directions; where it is that already, half as many cells, in graded directions of those that are short.
+BoxOptions coarsened_along(const Directions &directions, const double longest_short, const BoxOptions &options)
 {
   BoxOptions coarse = options;
   coarse.last.resize(options.element.dim, 1.);
@@ -51,7 +83,10 @@ BoxOptions coarsened_along(const Directions &directions, const BoxOptions &optio
   for (int d = 0; d < options.element.dim; ++d) {
     lower[d] = directions[d] && options.element.order_along(d) == 2;
     if (!directions[d] || lower[d]) continue;
-    halve(d, options, coarse);
+    if (options.graded(d))
+      join_short(d, longest_short, coarse);
+    else
+      halve(d, options, coarse);
   }
   coarse.element = options.element.with_order_one_along(lower);
   return coarse;
@@ -64,7 +99,8 @@ double stretch(const BoxOptions &options)
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;
   for (int d = 0; d < options.element.dim; ++d) {
     shortest = std::min(shortest, options.node_distance(d));
-    longest = std::max(longest, options.node_distance(d));
+    longest = std::max(longest, options.graded(d) ? options.cell_length(d) / options.element.order_along(d)
+                                                  : options.node_distance(d));
   }
   return longest / shortest;
 }
@@ -77,8 +113,9 @@ std::optional<BoxOptions> coarsened(const BoxOptions &options)
   BoxOptions fine = options;
   Directions closest{}, to_one{};
   bool all = true;
+  const double longest_short = coarsening_rules.equally_long * shortest;
   for (int d = 0; d < dim; ++d) {
-    closest[d] = can_be_coarsened(options, d) && options.node_distance(d) <= coarsening_rules.equally_long * shortest;
+    closest[d] = can_be_coarsened(options, d) && options.node_distance(d) <= longest_short;
     all = all && (closest[d] || options.intervals(d) == 1);
   }
   if (options.element.shape == Shape::simplex && options.element.order == 2) {
@@ -88,10 +125,10 @@ std::optional<BoxOptions> coarsened(const BoxOptions &options)
     }
     fine.element.shape = Shape::tensor; // of the same nodes
   }
-  const BoxOptions coarse = coarsened_along(closest, fine);
+  const BoxOptions coarse = coarsened_along(closest, longest_short, fine);
   if (!thin_direction(coarse) || thin_direction(options)) return coarse;
   for (int d = 0; d < dim; ++d) to_one[d] = closest[d] && coarse.intervals(d) == 1;
-  const BoxOptions across = coarsened_along(to_one, fine);
+  const BoxOptions across = coarsened_along(to_one, longest_short, fine);
   return thin_direction(across) ? across : coarse;
 }
 

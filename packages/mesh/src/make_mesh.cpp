@@ -312,6 +312,7 @@ std::optional<MeshOptions> coarser(const MeshOptions &options, const double fact
   if (auto *const box = std::get_if<BoxOptions>(&result)) {
     for (std::size_t d = 0; d < box->cells.size(); ++d)
       box->cells[d] = std::max(box->periodic[d] ? 2 : 1, static_cast<int>(std::lround(box->cells[d] / factor)));
+    grade(*box);
     return result;
   }
   auto &gmsh = std::get<GmshOptions>(result);

@@ -105,6 +105,26 @@ TEST(BoxOptions, BadValuesAreRefusedByName)
   expect_refused(deck("Cells", Array<int>(tuple(100000, 100000))), {"\"Mesh->Cells\"", "nodes", "supported"});
 }
 
+TEST(BoxOptions, ExpansionRatiosGradeIt)
+{
+  const BoxOptions options = read_box(deck("Expansion Ratio", Array<double>(tuple(1., 8.))));
+  EXPECT_FALSE(options.graded(0));
+  ASSERT_TRUE(options.graded(1));
+  EXPECT_EQ(options.ends[1].size(), 9U);
+  const auto ratio = [](const double x, const double y) { return deck("Expansion Ratio", Array<double>(tuple(x, y))); };
+  expect_refused(ratio(1, 0), {"\"Mesh->Expansion Ratio\" must be from 0.0001 to 10000", "got 0 in direction 2"});
+  expect_refused(ratio(-2, 1), {"\"Mesh->Expansion Ratio\"", "got -2 in direction 1"});
+  expect_refused(ratio(std::numeric_limits<double>::quiet_NaN(), 1), {"\"Mesh->Expansion Ratio\"", "got nan"});
+  expect_refused(deck("Expansion Ratio", Array<double>(tuple(2.))),
+                 {"\"Mesh->Expansion Ratio\" must hold as many numbers as \"Lower\" and \"Upper\", 2, got 1"});
+  ParameterList thin = ratio(1, 2);
+  thin.set("Cells", Array<int>(tuple(8, 1)));
+  expect_refused(thin, {"\"Mesh->Expansion Ratio\" must be 1 in directions of one cell, got 2 in direction 2"});
+  ParameterList endless = ratio(2, 1);
+  endless.set("Periodic", "X");
+  expect_refused(endless, {"\"Mesh->Expansion Ratio\" must be 1 in directions in which the box is periodic, got 2"});
+}
+
 TEST(BoxOptions, ParametersOfGmshAreRefusedByNameEvenAtTheirDefaults)
 {
   expect_refused(deck("File", "a.msh"), {"\"Mesh->File\"", "does not go with \"Mesh->Type\" = box"});

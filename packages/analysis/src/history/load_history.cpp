@@ -73,6 +73,7 @@ StepRecord broken_off(const Model &model, StepRecord until_then, const double t,
   record.energies = unknown_energies();
   for (const auto &q : contact::contact_quantities) record.contact.*q.value = unknown;
   for (const auto &q : body_quantities) record.body.*q.value = unknown;
+  for (const auto &q : contact::patch_quantities) record.patches.*q.value = unknown;
   record.contact.force.fill(unknown);
   std::array<double, 3> vector{};
   vector.fill(unknown);
@@ -143,6 +144,8 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
     last_.contact = s.contact.total;
     last_.side_forces.clear();
     for (const auto &side : s.contact.sides) last_.side_forces.push_back(side.force);
+    last_.patches = contact::counted(contact::contact_patches(*problem_->discretization().mesh,
+                                                              problem_->contact_sides(), s.step.contact, s.contact));
     last_.body = fem::body_peaks(problem_->discretization(), problem_->model().materials, *s.u);
     if (!mean_displacements_) mean_displacements_ = std::make_shared<const MeanDisplacements>(*problem_);
     last_.displacements = (*mean_displacements_)(*s.u);

@@ -5,6 +5,7 @@
 #include "rpc/analysis/predictor.hpp"
 #include "rpc/analysis/rules.hpp"
 #include "rpc/analysis/solve_step.hpp"
+#include "rpc/contact/contact_patches.hpp"
 #include "rpc/core/headway.hpp"
 #include "rpc/core/rules.hpp"
 #include "rpc/fem/peaks.hpp"
@@ -50,6 +51,7 @@ struct StepRecord {
   Energies energies;
   contact::ContactSums contact;
   std::vector<std::array<double, 3>> side_forces; ///< contact::ContactSums::force of each contact side
+  contact::PatchCount patches;                    ///< of all contact sides together; on rank 0
   fem::BodyPeaks body;
   std::vector<std::array<double, 3>> displacements;         ///< means over the place of each Dirichlet condition [m]
   std::vector<std::array<double, 3>> reactions;             ///< as in StepSolution

@@ -12,7 +12,7 @@
 namespace rpc::mesh
 {
 
-/// An axis-parallel box, divided evenly but for the last cells. 2D or 3D by the length of its arrays.
+/// An axis-parallel box. In each direction its cells are equal but for the last one, or graded. 2D or 3D by the length of its arrays.
 struct BoxOptions {
   std::vector<double> lower; ///< [m]
   std::vector<double> upper; ///< [m]   upper > lower
@@ -26,22 +26,34 @@ struct BoxOptions {
   std::array<bool, 3> periodic = {};
   /// Whether nodes of such upper sides are nodes of their own all the same, as files want it.
   bool unrolled = false;
+  /// Length of the last cell in each direction over that of the first one; those between are in geometric progression. Empty: 1.
+  std::vector<double> expansion = {};
+  /// Where the cells of graded directions end, cells + 1 ascending numbers [m]. Empty: equal cells, but for the last one.
+  std::array<std::vector<double>, 3> ends = {};
 
+  bool graded(const int direction) const { return !ends[direction].empty(); }
+  double expansion_in(const int direction) const { return expansion.empty() ? 1 : expansion[direction]; }
   /// Whether the upper side has the nodes of the lower one.
   bool wraps(const int direction) const { return periodic[direction] && !unrolled; }
   /// 0 where there is none [m].
   double period(const int direction) const { return wraps(direction) ? upper[direction] - lower[direction] : 0; }
   double last_in(const int direction) const { return last.empty() ? 1 : last[direction]; }
-  /// Of all cells but the last one [m].
-  double cell_length(const int direction) const
-  {
-    return (upper[direction] - lower[direction]) / (cells[direction] - 1 + last_in(direction));
-  }
-  /// Between neighbouring nodes, but for those of the last cell [m].
-  double node_distance(const int direction) const { return cell_length(direction) / element.order_along(direction); }
+  /// Of all cells but the last one, in graded directions of the longest one [m].
+  double cell_length(int direction) const;
+  /// Between neighbouring nodes, but for those of the last cell [m]. In graded directions of the two neighbouring cells of which the longer one is
+  /// shortest, in that one: those that a coarser box joins first.
+  double node_distance(int direction) const;
   /// Number of intervals between nodes.
   int intervals(const int direction) const { return cells[direction] * element.order_along(direction); }
 };
+
+/// Where cells end in a direction, cells + 1 numbers [m].
+std::vector<double> cell_ends(const BoxOptions &options, int direction);
+
+/// Fills `ends` of the directions in which `expansion` is not 1, by the number of cells n there, and empties it in the others:
+///
+///     x_k = lower + (upper - lower) (q^k - 1) / (q^n - 1),  q = expansion^(1/(n - 1))
+void grade(BoxOptions &options);
 
 /// Adds the box's parameters to a valid list.
 void add_box_parameters(Teuchos::ParameterList &valid);
@@ -51,7 +63,8 @@ BoxOptions box_options(const Teuchos::ParameterList &list);
 
 /// The next coarser box for multigrid. In the directions in which nodes are closest, up to 1.7 times the shortest distance, order 2 becomes
 /// order 1 on the same cells; where it is 1 already, each two cells become one, and of an odd number the last three. Other directions
-/// keep what they have, so that anisotropic cells become square ones first. Where that makes a box thin (thin_direction()), but so it is too with only the
+/// keep what they have, so that anisotropic cells become square ones first. In graded directions the same holds of pairs of cells: those longer than 1.7 times
+/// the shortest distance stay. Where that makes a box thin (thin_direction()), but so it is too with only the
 /// directions coarsened that come down to one interval between nodes, only they are. Functions of Q1 and Q2 boxes are among those of the finer one.
 /// P2 becomes P1 where node distances are alike, else Q2 with the same nodes takes its place. None where no direction has more
 /// than one interval. A direction in which the box is periodic keeps two cells at least.

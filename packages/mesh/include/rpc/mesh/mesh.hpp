@@ -76,7 +76,7 @@ struct Mesh {
   std::vector<std::string> blocks;       ///< names of the parts of the body, the same on all ranks
   std::vector<Side> sides;               ///< the same on all ranks, though a rank may have no facets of one
   std::vector<PointSet> points;          ///< the same on all ranks, though a rank may have no nodes of one
-  std::shared_ptr<const BoxOptions> box; ///< of which the mesh was made; null if it is no evenly divided box
+  std::shared_ptr<const BoxOptions> box; ///< of which the mesh was made; null if it is no box
   std::vector<BoundaryPart> geometry;    ///< what facets lie on, as far as it is known: those of a side would be listed
   std::string geometry_file;             ///< the .geo by which gmsh tells points of shapes without closed formulas
   std::vector<std::string> notes;        ///< on rank 0: what was mended, or left out, of a file
