@@ -98,6 +98,22 @@ class Patches(RpcTestCase):
                             lambda k: 0.0625 if 0 < k < len(rows) - 1 else 0.03125)
         self.assertNotIn("patches  ", output)
 
+    def test_histories_have_the_patches_of_each_step(self):
+        steps = STRIP.replace("Y: -0.02", "Y: -0.02*t").replace("strip:\n", "strip:\n  Steps: {Times: [0.2, 1.0]}\n")
+        found, _, _ = self.solve("strip", steps)
+        with (self.folder / "out" / "strip.history.csv").open() as table:
+            rows = list(csv.DictReader(table))
+        self.assertEqual(len(rows), 2)
+        for row, step in zip(rows, found["steps"]):
+            for key in ("patches", "largest_patch", "mean_gap"):
+                self.assertAlmostEqual(float(row[key]), step[key], delta=1e-12)
+        last = found["contact_patches"]["bottom"]
+        self.assertEqual(rows[1]["patches"], str(last["count"]))
+        self.assertAlmostEqual(found["steps"][1]["largest_patch"], last["sizes"][0], delta=1e-12)
+        self.assertAlmostEqual(found["steps"][1]["mean_gap"], last["mean_gap"], delta=1e-12)
+        self.assertLess(found["steps"][0]["largest_patch"], last["sizes"][0])
+        self.assertGreater(found["steps"][0]["mean_gap"], last["mean_gap"])
+
 
 if __name__ == "__main__":
     unittest.main()
