@@ -86,7 +86,7 @@ NO_RULES = {
     "numbers of formats and protocols: bytes, tags, types of cells": """
         packages/core/src/exchange.cpp packages/core/src/halo.cpp packages/core/src/message.cpp packages/core/src/units.cpp
         packages/io/src/checkpoint.cpp packages/mesh/src/gmsh_wire.cpp packages/mesh/src/gmsh_wire.hpp
-        packages/mesh/src/gmsh_size_callback.hpp packages/mesh/src/mesh_mending.cpp packages/solver/src/factor/mumps_factor.cpp
+        packages/mesh/src/gmsh_size_callback.hpp packages/solver/src/factor/mumps_factor.cpp
         src/checkpoint.cpp src/output/paths.cpp""",
     "numbers of shapes": """
         packages/mesh/include/rpc/mesh/size_field.hpp packages/mesh/src/element.cpp packages/mesh/src/topology.cpp""",

@@ -13,7 +13,7 @@ import re
 import sys
 
 # Kinds of cells by the number of their nodes, and types of elements with the table of their kinds.
-SOLIDS = {4: "tetra", 5: "pyramid", 6: "wedge", 8: "hexahedron", 10: "tetra10", 15: "wedge15", 20: "hexahedron20", 27: "hexahedron27"}
+SOLIDS = {4: "tetra", 5: "pyramid", 6: "wedge", 8: "hexahedron", 10: "tetra10", 13: "pyramid13", 15: "wedge15", 20: "hexahedron20", 27: "hexahedron27"}
 FACES = {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8", 9: "quad9"}
 KINDS = ((r"[AD]?C?C3D(\d+)\w*", SOLIDS), (r"[AD]?C?(?:CPS|CPE|CPEG|CAX|GAX|C2D|AX)(\d+)\w*", FACES),
          (r"(?:DS|S|STRI|M3D|SFM3D|R3D|MAX|SC)(\d+)\w*", FACES), (r"[CD]?T[23]D(\d)\w*", {2: "line", 3: "line3"}), (r"B[23](\d)\w*", {1: "line", 2: "line3"}))
@@ -22,10 +22,14 @@ NODES = {kind: count for kinds in (SOLIDS, FACES, {2: "line", 3: "line3"}) for c
 TETRAHEDRON = ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)), ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
 HEXAHEDRON = (((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
               ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)))
+WEDGE = (((0, 1, 2), (3, 5, 4), (0, 3, 4, 1), (1, 4, 5, 2), (2, 5, 3, 0)),
+         ((0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)))
+PYRAMID = (((0, 1, 2, 3), (0, 4, 1), (1, 4, 2), (2, 4, 3), (3, 4, 0)),
+           ((0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4)))
 TRIANGLE = ((0, 1), (1, 2), (2, 0)), ((0, 1), (1, 2), (2, 0))
 QUADRILATERAL = ((0, 1), (1, 2), (2, 3), (3, 0)), ((0, 1), (1, 2), (2, 3), (3, 0))
-CELLS = {"tetra": TETRAHEDRON, "tetra10": TETRAHEDRON, "hexahedron": HEXAHEDRON, "hexahedron20": HEXAHEDRON, "triangle": TRIANGLE,
-         "triangle6": TRIANGLE, "quad": QUADRILATERAL, "quad8": QUADRILATERAL}
+CELLS = {"tetra": TETRAHEDRON, "tetra10": TETRAHEDRON, "hexahedron": HEXAHEDRON, "hexahedron20": HEXAHEDRON, "wedge": WEDGE, "wedge15": WEDGE,
+         "pyramid": PYRAMID, "pyramid13": PYRAMID, "triangle": TRIANGLE, "triangle6": TRIANGLE, "quad": QUADRILATERAL, "quad8": QUADRILATERAL}
 FACETS = {(2, 2): "line", (3, 2): "line3", (3, 3): "triangle", (6, 3): "triangle6", (4, 4): "quad", (8, 4): "quad8"}
 MAKERS = ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SUBMODEL", "TRANSLATE")
 

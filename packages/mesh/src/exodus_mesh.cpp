@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "exodus_mesh.hpp"
 
+#include "cell_kinds.hpp"
 #include "gmsh_types.hpp"
 #include "gmsh_wire.hpp"
 #include "rpc/core/child_process.hpp"
@@ -47,13 +48,29 @@ std::optional<Element> element_with(const int type)
   return element_of_gmsh_type(type);
 }
 
+/// (nodes) Place of each node of a cell in gmsh's list; empty for cells that no body has.
+std::vector<int> places_by_gmsh(const int type)
+{
+  if (const auto element = element_with(type)) return element->gmsh_place();
+  const CellKind *const kind = cell_kind(type);
+  if (!kind) return {};
+  if (kind->num_vertices == 6) return {0, 1, 2, 3, 4, 5, 6, 9, 7, 8, 10, 11, 12, 14, 13, 15, 17, 16};
+  return {0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12, 13};
+}
+
+/// Faces of a wedge or pyramid in Exodus' order, each by its number in CellKind::faces.
+std::vector<int> faces_in_order(const CellKind &kind)
+{
+  return kind.num_vertices == 6 ? std::vector<int>{2, 4, 3, 0, 1} : std::vector<int>{0, 1, 2, 3, 4};
+}
+
 /// Nodes in Exodus' order in that of gmsh.
-void append_in_gmsh_order(const Element &element, const std::int64_t *const nodes, const int count,
+void append_in_gmsh_order(const std::vector<int> &places, const std::int64_t *const nodes, const int count,
                           std::vector<std::size_t> &all)
 {
   const std::size_t begin = all.size();
   all.resize(begin + count);
-  for (int a = 0; a < count; ++a) all[begin + element.gmsh_place()[a]] = static_cast<std::size_t>(nodes[a]);
+  for (int a = 0; a < count; ++a) all[begin + places[a]] = static_cast<std::size_t>(nodes[a]);
 }
 
 struct ExodusBlock {
@@ -177,8 +194,8 @@ private:
       if (block.type == 0)
         refuse(
             label + " has cells of type \"" + printable(type) + "\" with " + std::to_string(width) +
-            " nodes, which are unknown; triangles of 3 or 6 nodes, quadrilaterals of 4, 8 or 9, tetrahedra of 4 or 10 "
-            "and hexahedra of 8, 20 or 27 can be read");
+            " nodes, which are unknown; triangles of 3 or 6 nodes, quadrilaterals of 4, 8 or 9, tetrahedra of 4 or 10, "
+            "hexahedra of 8, 20 or 27, wedges of 6, 15 or 18 and pyramids of 5, 13 or 14 can be read");
       block.width = static_cast<int>(width);
       block.faces = is_shell(type) ? 2 : 0;
       block.nodes.resize(plausible(block.count * width, "nodes of the cells of " + label));
@@ -213,14 +230,14 @@ private:
     GmshElements elements;
     elements.group = add_group(dim, id, block.name);
     elements.type = block.type;
-    const auto element = element_with(block.type);
+    const std::vector<int> places = places_by_gmsh(block.type);
     for (std::int64_t c = 0; c < block.count; ++c) {
       elements.tags.push_back(static_cast<std::size_t>(block.first + c + 1));
       const std::int64_t *const nodes = &block.nodes[static_cast<std::size_t>(c) * block.width];
-      if (element)
-        append_in_gmsh_order(*element, nodes, block.width, elements.nodes);
-      else
+      if (places.empty())
         elements.nodes.insert(elements.nodes.end(), nodes, nodes + block.width);
+      else
+        append_in_gmsh_order(places, nodes, block.width, elements.nodes);
     }
     contents_.elements.push_back(std::move(elements));
   }
@@ -271,23 +288,60 @@ private:
     const auto block = std::find_if(blocks_.begin(), blocks_.end(),
                                     [&](const ExodusBlock &b) { return cell > b.first && cell <= b.first + b.count; });
     if (block == blocks_.end()) refuse(label + " names cell " + std::to_string(cell) + ", which there is not");
+    const CellKind *const kind = cell_kind(block->type);
+    if (!kind || kind->dim != contents_.dim) return; // cells that are refused later, or are no cells of the body
     const auto element = element_with(block->type);
-    if (!element || element->dim != contents_.dim) return; // cells that are refused later, or are no cells of the body
+    const int num_facets = element ? element->num_facets() : static_cast<int>(kind->faces.size());
     const std::int64_t facet_of_cell = side - block->faces;
-    if (facet_of_cell < 1 || facet_of_cell > element->num_facets())
+    if (facet_of_cell < 1 || facet_of_cell > num_facets)
       refuse(label + " names side " + std::to_string(side) + " of cell " + std::to_string(cell) + "; there are " +
-             std::to_string(block->faces + 1) + " to " + std::to_string(block->faces + element->num_facets()) +
+             std::to_string(block->faces + 1) + " to " + std::to_string(block->faces + num_facets) +
              (block->faces > 0 ? " beside its faces" : ""));
     const std::int64_t *const of_cell = &block->nodes[static_cast<std::size_t>(cell - 1 - block->first) * block->width];
+    const int facet = static_cast<int>(facet_of_cell) - 1;
+    if (element)
+      add_facet(cell, element->facet(), nodes_at(element->facets()[facet], of_cell, block->width), by_type);
+    else
+      add_face(cell, *kind, facet, of_cell, block->width, by_type);
+  }
+
+  /// Those of a cell's nodes that there are.
+  static Integers nodes_at(const std::vector<int> &places, const std::int64_t *const of_cell, const int width)
+  {
     Integers nodes;
-    for (const int local : element->facets()[facet_of_cell - 1])
-      if (local < block->width) nodes.push_back(of_cell[local]);
+    for (const int local : places)
+      if (local < width) nodes.push_back(of_cell[local]);
+    return nodes;
+  }
+
+  static void add_facet(const std::int64_t cell, const Element &facet, const Integers &nodes,
+                        std::map<int, GmshElements> &by_type)
+  {
     constexpr int quadrilateral_8 = 16;
-    const Element facet = element->facet();
     const int count = static_cast<int>(nodes.size());
     GmshElements &elements = by_type[count == facet.num_nodes() ? facet.gmsh_type() : quadrilateral_8];
     elements.tags.push_back(static_cast<std::size_t>(cell));
-    append_in_gmsh_order(facet, nodes.data(), count, elements.nodes);
+    append_in_gmsh_order(facet.gmsh_place(), nodes.data(), count, elements.nodes);
+  }
+
+  /// A face of a wedge or pyramid.
+  static void add_face(const std::int64_t cell, const CellKind &kind, const int face, const std::int64_t *const of_cell,
+                       const int width, std::map<int, GmshElements> &by_type)
+  {
+    std::vector<std::size_t> in_order;
+    append_in_gmsh_order(places_by_gmsh(kind.linear), of_cell, width, in_order);
+    const int ordinal = faces_in_order(kind)[face];
+    const CellKind &facet = *cell_kind(kind.faces[ordinal].size() == 3 ? 2 : 3);
+    std::vector<std::size_t> nodes;
+    for (const int local : kind.nodes_of_face(ordinal))
+      if (local < width) nodes.push_back(in_order[local]);
+    const int count = static_cast<int>(nodes.size());
+    const int type = count == facet.num_vertices                 ? facet.linear
+                     : count == facet.num_nodes(facet.quadratic) ? facet.quadratic
+                                                                 : facet.serendipity;
+    GmshElements &elements = by_type[type];
+    elements.tags.push_back(static_cast<std::size_t>(cell));
+    elements.nodes.insert(elements.nodes.end(), nodes.begin(), nodes.end());
   }
 
   void take_node_sets()

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gmsh_mesh.hpp"
 
+#include "cell_kinds.hpp"
 #include "gmsh_sides.hpp"
 #include "gmsh_types.hpp"
 #include "mesh_checks.hpp"
 #include "mesh_mending.hpp"
+#include "mixed_cells.hpp"
 #include "rpc/core/error.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -73,35 +76,65 @@ void check_groups(const std::string &where, const GmshContents &contents)
   }
 }
 
-/// What to do where there is no geometry to be meshed again.
-constexpr const char *without_geometry =
-    "; of a mesh alone ParaView's filter Tetrahedralize makes triangles or tetrahedra (save them as .vtu)";
-
-/// What to do about cells of a type that cannot be read, if there is something.
-std::string remedy_for_type(const int number)
+/// What to do about wedges and pyramids that gmsh makes of a geometry: levels of a mesh must be of one kind of cells.
+std::string remedy_for_type(const int number, const bool made)
 {
-  const GmshType *const type = gmsh_type(number);
-  const std::string shape = type ? type->shape : "";
-  if (shape == "Prism" || shape == "Pyramid")
-    return std::string("; in gmsh without Recombine there are tetrahedra, and with Mesh.SubdivisionAlgorithm = 2 "
-                       "besides hexahedra") +
-           without_geometry;
-  return "";
+  const CellKind *const kind = cell_kind(number);
+  if (!made || !kind || (kind->num_vertices != 5 && kind->num_vertices != 6)) return "";
+  return "; without Recombine there are tetrahedra, and with Mesh.SubdivisionAlgorithm = 2 besides hexahedra; or save "
+         "the mesh as a .msh and give that, whose wedges and pyramids are divided into tetrahedra";
+}
+
+/// Each cell is in one block, once.
+void check_blocks(const std::string &where, const GmshContents &contents)
+{
+  std::vector<std::pair<std::size_t, int>> cells; // tag, group
+  for (const auto &elements : contents.elements)
+    if (contents.groups[elements.group].dim == contents.dim)
+      for (const std::size_t tag : elements.tags) cells.push_back({tag, elements.group});
+  if (!std::is_sorted(cells.begin(), cells.end())) std::sort(cells.begin(), cells.end());
+  for (std::size_t c = 1; c < cells.size(); ++c) {
+    const auto block = [&](const std::size_t at) { return contents.groups[cells[at].second].name; };
+    RPC_REQUIRE_CODE(cells[c].first != cells[c - 1].first || cells[c].second == cells[c - 1].second, ExitCode::bad_mesh,
+                     where << "cell " << cells[c].first << " belongs to the " << contents.kind[contents.dim] << "s \""
+                           << block(c - 1) << "\" and \"" << block(c) << "\"; each cell must belong to one");
+    RPC_REQUIRE_CODE(cells[c].first != cells[c - 1].first, ExitCode::bad_mesh,
+                     where << "there are two cells " << cells[c].first << " in \"" << block(c) << "\"");
+  }
+}
+
+bool of_order_1(const int type)
+{
+  return cell_kind(type)->linear == type;
+}
+
+/// What to do about cells of several kinds that are not divided.
+std::string remedy_for_mixture(const GmshContents &contents, const int one, const int other, const bool made)
+{
+  if (of_order_1(one) != of_order_1(other))
+    return "; they must be of one order: mesh all of them with order 1, or with 2";
+  if (!made) return "";
+  return "; a .geo that recombines may need Mesh.SubdivisionAlgorithm = " + std::to_string(contents.dim - 1) +
+         "; or save the mesh as a .msh and give that, whose cells are divided into " +
+         (contents.dim == 2 ? "triangles" : "tetrahedra");
 }
 
 /// The one kind of cell that the whole body has.
-Element element_of(const std::string &where, const GmshContents &contents)
+/// @param made  whether gmsh has made it of a geometry
+Element element_of(const std::string &where, const GmshContents &contents, const bool made)
 {
   const GmshElements *first = nullptr;
   for (const auto &elements : contents.elements) {
     const auto &group = contents.groups[elements.group];
     if (group.dim != contents.dim) continue;
-    RPC_REQUIRE_CODE(element_of_gmsh_type(elements.type), ExitCode::bad_mesh,
+    RPC_REQUIRE_CODE(element_of_gmsh_type(elements.type) || (!made && cell_kind(elements.type)), ExitCode::bad_mesh,
                      where << "cells of type \"" << name_of_gmsh_type(elements.type) << "\" in "
                            << contents.kind[group.dim] << " \"" << group.name << "\"; "
-                           << (contents.dim == 2 ? "triangles of 3 or 6 nodes and quadrilaterals of 4 or 9"
-                                                 : "tetrahedra of 4 or 10 nodes and hexahedra of 8 or 27")
-                           << " can be read" << remedy_for_type(elements.type));
+                           << (contents.dim == 2 ? "triangles of 3 or 6 nodes and quadrilaterals of 4, 8 or 9"
+                               : made            ? "tetrahedra of 4 or 10 nodes and hexahedra of 8 or 27"
+                                                 : "tetrahedra of 4 or 10 nodes, hexahedra of 8, 20 or 27, wedges "
+                                                   "of 6, 15 or 18 and pyramids of 5, 13 or 14")
+                           << " can be read" << remedy_for_type(elements.type, made));
     if (!first) first = &elements;
   }
   const auto summary = [&](const int type) {
@@ -116,12 +149,14 @@ Element element_of(const std::string &where, const GmshContents &contents)
     for (const auto &group : names) text += (group == *names.begin() ? "" : ", ") + group;
     return text;
   };
+  std::optional<int> other; // one of another order, if there is one
   for (const auto &elements : contents.elements)
-    RPC_REQUIRE_CODE(contents.groups[elements.group].dim != contents.dim || elements.type == first->type,
-                     ExitCode::bad_mesh,
-                     where << "cells must be of one kind, got " << summary(first->type) << " and "
-                           << summary(elements.type) << "; a .geo that recombines may need Mesh.SubdivisionAlgorithm = "
-                           << contents.dim - 1 << without_geometry);
+    if (contents.groups[elements.group].dim == contents.dim && elements.type != first->type &&
+        (!other || of_order_1(elements.type) != of_order_1(first->type)))
+      other = elements.type;
+  RPC_REQUIRE_CODE(!other, ExitCode::bad_mesh,
+                   where << "cells must be of one kind, got " << summary(first->type) << " and " << summary(*other)
+                         << remedy_for_mixture(contents, first->type, *other, made));
   return *element_of_gmsh_type(first->type);
 }
 
@@ -211,23 +246,6 @@ void take_cells(GmshContents &contents, TaggedMesh &draft)
   }
 }
 
-void check_blocks(const GmshContents &contents, const TaggedMesh &draft)
-{
-  std::vector<std::pair<std::size_t, int>> cells; // tag, cell
-  cells.reserve(draft.cell_tag.size());
-  for (std::size_t c = 0; c < draft.cell_tag.size(); ++c) cells.push_back({draft.cell_tag[c], static_cast<int>(c)});
-  if (!std::is_sorted(cells.begin(), cells.end())) std::sort(cells.begin(), cells.end());
-  for (std::size_t c = 1; c < cells.size(); ++c) {
-    const auto block = [&](const std::size_t at) { return draft.mesh.blocks[draft.mesh.block[cells[at].second]]; };
-    RPC_REQUIRE_CODE(cells[c].first != cells[c - 1].first || block(c - 1) == block(c), ExitCode::bad_mesh,
-                     draft.where << "cell " << cells[c].first << " belongs to the "
-                                 << contents.kind[draft.mesh.element.dim] << "s \"" << block(c - 1) << "\" and \""
-                                 << block(c) << "\"; each cell must belong to one");
-    RPC_REQUIRE_CODE(cells[c].first != cells[c - 1].first, ExitCode::bad_mesh,
-                     draft.where << "there are two cells " << cells[c].first << " in \"" << block(c) << "\"");
-  }
-}
-
 /// Nodes that no cell uses are left out.
 void note_unused_nodes(const GmshContents &contents, TaggedMesh &draft)
 {
@@ -256,11 +274,12 @@ MeshData mesh_of_gmsh(const std::string &where, GmshContents contents, const boo
   name_groups(contents);
   check_groups(draft.where, contents);
   note_empty_groups(contents);
+  check_blocks(draft.where, contents);
   complete_serendipity(where, contents);
-  draft.mesh.element = element_of(draft.where, contents);
+  if (!any_nodes) divide_mixed_cells(draft.where, contents);
+  draft.mesh.element = element_of(draft.where, contents, any_nodes);
   take_nodes(contents, draft);
   take_cells(contents, draft);
-  check_blocks(contents, draft);
   if (!any_nodes) drop_height(draft);
   check_nodes(draft);
   turn_mirrored_cells(draft);

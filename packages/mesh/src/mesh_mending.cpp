@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh_mending.hpp"
 
+#include "cell_kinds.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,14 +15,6 @@ namespace rpc::mesh
 {
 namespace
 {
-
-// gmsh's numbers of element types.
-constexpr int quadrilateral_8 = 16, quadrilateral_9 = 10, hexahedron_20 = 17, hexahedron_27 = 12;
-
-/// Corners of a hexahedron's faces and the middle nodes of their edges, in gmsh's order.
-constexpr int faces_of_hexahedron[6][8] = {{0, 3, 2, 1, 9, 13, 11, 8},   {0, 1, 5, 4, 8, 12, 16, 10},
-                                           {0, 4, 7, 3, 10, 17, 15, 9},  {1, 2, 6, 5, 11, 14, 18, 12},
-                                           {2, 3, 7, 6, 13, 15, 19, 14}, {4, 5, 6, 7, 16, 18, 19, 17}};
 
 /// Nodes in the middle of faces and cells.
 class MiddleNodes
@@ -44,8 +38,12 @@ public:
     return at->second;
   }
   std::size_t of_hexahedron(const std::size_t *const nodes) { return add(nodes, 8, 12, 0.25); }
-
-  std::size_t count() const { return count_; }
+  /// A face that has its middle node.
+  void know(std::array<std::size_t, 4> corners, const std::size_t middle)
+  {
+    std::sort(corners.begin(), corners.end());
+    faces_.insert({corners, middle});
+  }
 
 private:
   /// Where the serendipity map has the middle: -1/4 for corners, `weight` for middle nodes of edges.
@@ -60,7 +58,6 @@ private:
     }
     contents_.coords.insert(contents_.coords.end(), x, x + 3);
     contents_.node_tags.push_back(++last_);
-    ++count_;
     return last_;
   }
 
@@ -68,28 +65,71 @@ private:
   GmshContents &contents_;
   std::unordered_map<std::size_t, std::size_t> place_; // by tag, of the nodes in the file
   std::map<std::array<std::size_t, 4>, std::size_t> faces_;
-  std::size_t last_ = 0, count_ = 0;
+  std::size_t last_ = 0;
 };
 
-std::vector<std::size_t> completed_quadrilateral(const std::size_t *const nodes, MiddleNodes &middles)
+/// Local nodes of the quadrilaterals of a kind of cells, of which a plane one is the only one itself: corners, middles of edges, middle.
+std::vector<std::vector<int>> quadrilaterals_of(const CellKind &kind)
 {
-  std::array<std::size_t, 8> face{};
-  std::copy_n(nodes, 8, face.begin());
-  std::vector<std::size_t> all(nodes, nodes + 8);
-  all.push_back(middles.of_face(face));
+  if (kind.dim == 2) return {{0, 1, 2, 3, 4, 5, 6, 7, 8}};
+  std::vector<std::vector<int>> all;
+  for (int f = 0; f < static_cast<int>(kind.faces.size()); ++f)
+    if (kind.faces[f].size() == 4) all.push_back(kind.nodes_of_face(f));
   return all;
 }
 
-std::vector<std::size_t> completed_hexahedron(const std::size_t *const nodes, MiddleNodes &middles)
+bool is_incomplete(const GmshElements &elements)
 {
-  std::vector<std::size_t> all(nodes, nodes + 20);
-  for (const auto &local : faces_of_hexahedron) {
-    std::array<std::size_t, 8> face{};
-    for (int a = 0; a < 8; ++a) face[a] = nodes[local[a]];
-    all.push_back(middles.of_face(face));
+  const CellKind *const kind = cell_kind(elements.type);
+  return kind && elements.type == kind->serendipity;
+}
+
+/// Faces of the cells that have all nodes, which may lie beside others.
+void know_faces(const GmshContents &contents, MiddleNodes &middles)
+{
+  for (const GmshElements &elements : contents.elements) {
+    const CellKind *const kind = cell_kind(elements.type);
+    if (!kind || kind->simplex() || elements.type != kind->quadratic) continue;
+    const std::size_t width = kind->num_nodes(elements.type);
+    const auto faces = quadrilaterals_of(*kind);
+    for (std::size_t first = 0; first < elements.nodes.size(); first += width)
+      for (const auto &face : faces) {
+        const auto node = [&](const int a) { return elements.nodes[first + face[a]]; };
+        middles.know({node(0), node(1), node(2), node(3)}, node(8));
+      }
   }
-  all.push_back(middles.of_hexahedron(nodes));
-  return all;
+}
+
+void complete(GmshElements &elements, MiddleNodes &middles)
+{
+  const CellKind &kind = *cell_kind(elements.type);
+  const auto faces = quadrilaterals_of(kind);
+  const std::size_t width = kind.num_nodes(kind.serendipity);
+  std::vector<std::size_t> all;
+  for (std::size_t first = 0; first < elements.nodes.size(); first += width) {
+    const std::size_t *const nodes = &elements.nodes[first];
+    all.insert(all.end(), nodes, nodes + width);
+    for (const auto &local : faces) {
+      std::array<std::size_t, 8> face{};
+      for (int a = 0; a < 8; ++a) face[a] = nodes[local[a]];
+      all.push_back(middles.of_face(face));
+    }
+    if (kind.num_vertices == 8) all.push_back(middles.of_hexahedron(nodes));
+  }
+  elements.nodes = std::move(all);
+  elements.type = kind.quadratic;
+}
+
+/// "3 serendipity cells, of 20 nodes, get 7 more where their map has the middles of faces and cells".
+std::string note_on_complete(const CellKind &kind, const std::size_t cells)
+{
+  const int nodes = kind.num_nodes(kind.serendipity), more = kind.num_nodes(kind.quadratic) - nodes;
+  return std::to_string(cells) + " serendipity cells, of " + std::to_string(nodes) + " nodes, get " +
+         (more == 1 ? "another" : std::to_string(more) + " more") + " where their map has the middle" +
+         (kind.num_vertices == 8   ? "s of faces and cells: they are Q2 cells of the same shape"
+          : kind.num_vertices == 4 ? ": they are Q2 cells of the same shape"
+          : more == 1              ? " of their base"
+                                   : "s of faces");
 }
 
 /// A corner of the reference cell, and the corners beside it in each direction; -1 where the arm runs against the direction.
@@ -146,32 +186,17 @@ std::vector<int> mirrored_places(const Element &element)
 
 void complete_serendipity(const std::string &where, GmshContents &contents)
 {
-  const auto is_incomplete = [](const GmshElements &elements) {
-    return elements.type == quadrilateral_8 || elements.type == hexahedron_20;
-  };
-  std::size_t cells = 0;
+  std::map<int, std::size_t> cells; // by gmsh's type
   for (const auto &elements : contents.elements)
-    if (is_incomplete(elements) && contents.groups[elements.group].dim == contents.dim) cells += elements.tags.size();
-  if (cells == 0) return;
+    if (is_incomplete(elements) && contents.groups[elements.group].dim == contents.dim)
+      cells[elements.type] += elements.tags.size();
+  if (cells.empty()) return;
   MiddleNodes middles(where, contents);
   contents.last_node = *std::max_element(contents.node_tags.begin(), contents.node_tags.end());
-  for (auto &elements : contents.elements) {
-    if (!is_incomplete(elements)) continue;
-    const bool face = elements.type == quadrilateral_8;
-    std::vector<std::size_t> nodes;
-    const std::size_t width = face ? 8 : 20;
-    for (std::size_t first = 0; first + width <= elements.nodes.size(); first += width) {
-      const std::vector<std::size_t> all = face ? completed_quadrilateral(&elements.nodes[first], middles)
-                                                : completed_hexahedron(&elements.nodes[first], middles);
-      nodes.insert(nodes.end(), all.begin(), all.end());
-    }
-    elements.nodes = std::move(nodes);
-    elements.type = face ? quadrilateral_9 : hexahedron_27;
-  }
-  contents.notes.push_back(std::to_string(cells) + " serendipity cells, of " +
-                           (contents.dim == 2 ? "8 nodes, get a ninth" : "20 nodes, get 7 more") +
-                           " where their map has the middle" + (contents.dim == 2 ? "" : "s of faces and cells") +
-                           ": they are Q2 cells of the same shape");
+  know_faces(contents, middles);
+  for (auto &elements : contents.elements)
+    if (is_incomplete(elements)) complete(elements, middles);
+  for (const auto &[type, count] : cells) contents.notes.push_back(note_on_complete(*cell_kind(type), count));
 }
 
 void turn_mirrored_cells(TaggedMesh &draft)
@@ -179,7 +204,7 @@ void turn_mirrored_cells(TaggedMesh &draft)
   const Element &element = draft.mesh.element;
   const auto places = mirrored_places(element);
   const auto corners = corners_of(element);
-  std::size_t count = 0, first = 0;
+  std::size_t count = 0, first = 0, last = 0;
   std::vector<int> turned(places.size());
   for (int c = 0; c < draft.mesh.num_cells(); ++c) {
     const auto nodes = draft.mesh.cells.begin() + static_cast<std::ptrdiff_t>(c) * element.num_nodes();
@@ -187,7 +212,9 @@ void turn_mirrored_cells(TaggedMesh &draft)
     if (!std::all_of(corners.begin(), corners.end(),
                      [&](const Corner &corner) { return corner_measure(draft, &*nodes, corner) < 0; }))
       continue;
-    if (count++ == 0) first = draft.cell_tag[c];
+    if (count == 0) first = draft.cell_tag[c];
+    if (count == 0 || draft.cell_tag[c] != last) ++count; // parts of one cell of the file follow each other
+    last = draft.cell_tag[c];
     for (std::size_t a = 0; a < places.size(); ++a) turned[a] = nodes[places[a]];
     std::copy(turned.begin(), turned.end(), nodes);
   }

@@ -9,8 +9,8 @@
 namespace rpc::mesh
 {
 
-/// Gives quadrilaterals of 8 nodes and hexahedra of 20 the nodes that those of 9 and 27 have besides, where the map of the 8 or 20 nodes has
-/// the middle of a face or cell: the geometry stays what it is. A note says so.
+/// Gives quadrilaterals of 8 nodes, hexahedra of 20, wedges of 15 and pyramids of 13 the nodes that those of 9, 27, 18 and 14 have besides, where
+/// the map of their own nodes has the middle of a face or cell: the geometry stays what it is. A note says so.
 /// @param where  beginning of messages
 /// @throws rpc::Error (bad_mesh) if a cell names a node that there is not
 void complete_serendipity(const std::string &where, GmshContents &contents);

@@ -20,6 +20,9 @@ path, target = sys.argv[1:3]
 TYPES = {"vertex": 0, "line": 1, "line3": 1, "triangle": 2, "triangle6": 2, "quad": 2, "quad8": 2, "quad9": 2, "tetra": 3, "tetra10": 3,
          "hexahedron": 3, "hexahedron20": 3, "hexahedron27": 3, "wedge": 3, "wedge15": 3, "wedge18": 3, "pyramid": 3, "pyramid13": 3,
          "pyramid14": 3}
+for kind, dim in TYPES.items():  # meshio 5.0 has forgotten wedge15 and pyramid13
+    with contextlib.suppress(AttributeError):
+        meshio._mesh.topological_dimension.setdefault(kind, dim)
 MATERIALS = ("mat_id", "MaterialIds", "material", "CellEntityIds", "ElementBlockIds")  # of VTK: the first of them counts
 TAGS = ("gmsh:physical", "medit:ref", "nastran:ref", "cell_tags", "avsucd:material", "flac3d:group", "tetgen:ref")
 
@@ -54,6 +57,8 @@ for kind, nodes in blocks:
         sys.exit(f"it finds cells of type {kind}, which rpc does not know")
     if nodes.size and (nodes.min() < 0 or nodes.max() >= len(points)):
         sys.exit(f"cells of type {kind} use node {nodes.max() + 1 if nodes.max() >= len(points) else nodes.min() + 1}; there are 1 to {len(points)}")
+WEDGE_18 = [0, 1, 2, 3, 4, 5, 6, 8, 12, 7, 13, 14, 9, 11, 10, 15, 17, 16]  # meshio writes these as VTK has them, not in gmsh's order
+blocks = [(kind, nodes[:, WEDGE_18] if kind == "wedge18" else nodes) for kind, nodes in blocks]
 body = max([TYPES[kind] for kind, nodes in blocks if len(nodes)], default=0)
 if body < 2:
     sys.exit("it finds no triangles, quadrilaterals, tetrahedra or hexahedra")

@@ -299,18 +299,8 @@ TEST(MshInSpace, GroupsMustBeFilledAndCellsInOneBlock)
                  {"cell 11", "physical volumes \"lower\" and \"upper\""});
 }
 
-TEST(MshInSpace, CellsMustBeOfOneKindThatCanBeRead)
+TEST(MshInSpace, FacetsMustFitTheCells)
 {
-  const std::string readable = "tetrahedra of 4 or 10 nodes and hexahedra of 8 or 27";
-  expect_refused(with_element(tetrahedra(), 3, "12 6 2 4 0 1 2 3 4 5 5"),
-                 {"\"Prism 6\"", "physical volume \"upper\"", readable, "without Recombine"});
-  expect_refused(with_element(tetrahedra(), 3, "12 7 2 4 0 1 2 3 4 5"),
-                 {"\"Pyramid 5\"", readable, "Mesh.SubdivisionAlgorithm = 2"});
-  expect_refused(with_element(tetrahedra(), 3, "12 17 2 4 0 1 2 3 4 5 1 2 3 4 5 1 2 3 4 5 1 2 3 4 5"),
-                 {"one kind", "\"Hexahedron 27\" in \"upper\""});
-  expect_refused(with_element(tetrahedra(), 3, "12 5 2 4 0 1 2 3 4 5 1 2 3"),
-                 {"one kind", "1 of type \"Tetrahedron 4\" in \"lower\"", "1 of type \"Hexahedron 8\" in \"upper\"",
-                  "Mesh.SubdivisionAlgorithm = 2"});
   expect_refused(
       with_element(tetrahedra(), 0, "21 9 2 1 0 1 2 3 1 2 3"),
       {"triangles of type \"Triangle 6\" in physical surface \"bottom\"", "cells of type \"Tetrahedron 4\""});
