@@ -202,8 +202,13 @@ void print_loads(Block &block, const Scene &scene, const fem::Discretization &d)
     std::vector<std::string> others{"what \"Dirichlet\" prescribes"};
     if (std::any_of(held.begin(), held.end(), [](const auto &each) { return each.rigid.has_value(); }))
       others = {"what \"Dirichlet\" and \"Rigid\" give"};
-    if (std::any_of(sides.begin(), sides.end(), [](const auto &side) { return side.obstacle.is_moved(); }))
+    const auto any = [&](const auto &test) { return std::any_of(sides.begin(), sides.end(), test); };
+    if (any([](const auto &side) {
+          return side.obstacle.force[0] || side.obstacle.force[1] || side.obstacle.force[2];
+        }))
       others.emplace_back("the force on the obstacle");
+    else if (any([](const auto &side) { return side.obstacle.has_springs(); }))
+      others.emplace_back("the spring of the obstacle");
     block.line("loads", "none but " + joined_by(others, " and "));
   }
 }
@@ -241,6 +246,11 @@ void print_foundations(Block &block, const Scene &scene)
     for (int c = 0; c < 3; ++c)
       if (side.obstacle.force[c])
         moves += std::string(", moved by Force ") + component_names[c] + " = " + field_words(*side.obstacle.force[c]);
+    for (int c = 0; c < 3; ++c)
+      if (side.obstacle.stiffness[c] > 0)
+        moves += std::string(", on a spring along ") + component_names[c] + " of " +
+                 plain_number(side.obstacle.stiffness[c]) + " " + scene.model.units.force + "/" +
+                 scene.model.units.length;
     if (moves.empty() && side.obstacle.moves()) moves = ", which moves";
     const std::string obstacle =
         side.obstacle.exists() ? "; the gap follows from the obstacle" + moves + detail : std::string();

@@ -33,7 +33,7 @@ std::vector<int> rotations_of(const fem::DirichletCondition &condition)
   return rotations;
 }
 
-/// Whether a force moves an obstacle.
+/// Whether a force or a spring moves an obstacle.
 bool is_moved(const Scene &scene)
 {
   const auto &sides = scene.model.contact;
@@ -65,6 +65,8 @@ std::string heading(const Scene &scene, const int dim, const ResultScope &scope)
         text << ',' << io::csv_quoted(condition.name + what + axes[k - 3] + unit);
   if (is_moved(scene))
     for (int c = 0; c < dim; ++c) text << ",obstacle_displacement_" << axes[c] << in(unit::length);
+  if (analysis::spring_force_on_obstacle(scene.model, {}))
+    for (int c = 0; c < dim; ++c) text << ",obstacle_spring_force_" << axes[c] << in(unit::force);
   write_names(text, count_columns(scope), scope);
   text << ",seconds,converged,reason";
   write_names(text, history_columns(analysis::body_quantities, scope), scope);
@@ -96,6 +98,8 @@ std::string row(const Scene &scene, const analysis::StepRecord &step, const int 
     ++rigid;
   }
   for (int c = 0; c < dim && is_moved(scene); ++c) text << ',' << step.obstacle[c];
+  const auto drawn = analysis::spring_force_on_obstacle(scene.model, step.obstacle);
+  for (int c = 0; c < dim && drawn; ++c) text << ',' << (*drawn)[c];
   write_values(text, count_columns(scope), step);
   text << ',' << step.seconds << ',' << (step.converged ? 1 : 0) << ',' << io::csv_quoted(step.reason);
   write_values(text, history_columns(analysis::body_quantities, scope), step.body);

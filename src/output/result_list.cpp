@@ -91,6 +91,15 @@ void add_bounded_energy(std::vector<Result> &all, const Scene &scene, const Solu
   }
 }
 
+/// Of those that an obstacle is on [N/m]; 0: there is none.
+double stiffest_spring(const Scene &scene)
+{
+  double most = 0;
+  for (const auto &side : scene.model.contact)
+    for (const double stiffness : side.obstacle.stiffness) most = std::max(most, stiffness);
+  return most;
+}
+
 /// Those of supports and of what forces move, which are unknown where that of the contact force is.
 void add_bars_of_entries(std::vector<Result> &all, const Scene &scene, const Solution &s,
                          const adapt::ObservedErrors &errors)
@@ -112,14 +121,16 @@ void add_bars_of_entries(std::vector<Result> &all, const Scene &scene, const Sol
   for (Result &result : all) {
     const std::string &key = result.key;
     const bool moves = key == "force_displacement" || key == "rigid_rotation" || key == "rigid_moment";
-    if (!moves && key != "reaction_force" && key != "obstacle_displacement") continue;
+    const bool of_obstacle = key == "obstacle_displacement" || key == "obstacle_spring_force";
+    if (!moves && key != "reaction_force" && !of_obstacle) continue;
     result.no_bar = reason == errors.unknown.end() ? "" : reason->second;
     if (!result.no_bar.empty()) continue;
-    result.error_bar = key == "reaction_force"       ? of_condition(result, errors.reactions)
-                       : key == "force_displacement" ? of_condition(result, motions.displacements)
-                       : key == "rigid_rotation"     ? of_rigid_side(result, motions.rotations)
-                       : key == "rigid_moment"       ? of_rigid_side(result, motions.moments)
-                                                     : motions.obstacle;
+    result.error_bar = key == "reaction_force"          ? of_condition(result, errors.reactions)
+                       : key == "force_displacement"    ? of_condition(result, motions.displacements)
+                       : key == "rigid_rotation"        ? of_rigid_side(result, motions.rotations)
+                       : key == "rigid_moment"          ? of_rigid_side(result, motions.moments)
+                       : key == "obstacle_spring_force" ? motions.obstacle * stiffest_spring(scene)
+                                                        : motions.obstacle;
   }
 }
 
@@ -237,6 +248,13 @@ std::optional<Point> obstacle_moved(const Scene &scene, const Solution &s)
   return Point{unknown, unknown, unknown};
 }
 
+std::optional<Point> obstacle_spring_force(const Scene &scene, const Solution &s)
+{
+  auto force = analysis::spring_force_on_obstacle(scene.model, s.step.obstacle);
+  if (force && !s.has_results()) force->fill(std::numeric_limits<double>::quiet_NaN());
+  return force;
+}
+
 std::vector<Result> result_list(const Scene &scene, const Solution &s)
 {
   const ResultScope scope = analysis::result_scope(scene.model, s.discretization);
@@ -266,6 +284,11 @@ std::vector<Result> result_list(const Scene &scene, const Solution &s)
     Result displacement = vector_result("obstacle_displacement", *moved, dim, scope.units.length);
     displacement.line = "displacement of the obstacle";
     all.push_back(displacement);
+  }
+  if (const auto drawn = obstacle_spring_force(scene, s)) {
+    Result force = vector_result("obstacle_spring_force", *drawn, dim, scope.units.of(unit::force, scope.per_length));
+    force.line = "spring of the obstacle";
+    all.push_back(force);
   }
   add_results(all, analysis::body_quantities, s.body, scope);
   Result energy;

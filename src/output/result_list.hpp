@@ -37,6 +37,8 @@ std::vector<Result> result_list(const Scene &scene, const Solution &solution);
 
 /// How far the obstacle that a force moves is from where it was at t = 0 [m], NaN without a solution; nothing where there is none.
 std::optional<Point> obstacle_moved(const Scene &scene, const Solution &solution);
+/// With what its springs draw it back [N]; NaN without a solution; nothing where it has none.
+std::optional<Point> obstacle_spring_force(const Scene &scene, const Solution &solution);
 
 /// Those of one of several contact sides, without error bars.
 std::vector<Result> side_results(const Scene &scene, const Solution &solution, std::size_t side);

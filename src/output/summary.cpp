@@ -274,6 +274,8 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
       json["force_displacement"][scene.model.dirichlet[k].name] = vector_json(s.displacements[k], mesh.dim());
   json["rigid"] = rigid_json(scene, s);
   if (const auto moved = obstacle_moved(scene, s)) json["obstacle_displacement"] = vector_json(*moved, mesh.dim());
+  if (const auto drawn = obstacle_spring_force(scene, s))
+    json["obstacle_spring_force"] = vector_json(*drawn, mesh.dim());
   json["side_displacement"] = nlohmann::ordered_json::object();
   if (s.has_results() && s.u != Teuchos::null)
     for (const auto &side : analysis::side_displacements(s.discretization, *s.u))

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Random bodies that a force presses, against the same bodies that a displacement presses.
 
-    python3 forces.py --rpc=build/rpc [--moved=side] [--bars=1] [--seed=1] [--scenes=50] [--only=K] [--jobs=2] [--keep=DIR]
+    python3 forces.py --rpc=build/rpc [--moved=side] [--springs=1] [--bars=1] [--seed=1] [--scenes=50] [--only=K] [--jobs=2] [--keep=DIR]
 
 Scene K comes from the seed and K alone: a box in the plane, of revolution or in space, whose top is held rigid, on an obstacle or a foundation with a
 gap, rigid or yielding, hardening or on springs, some with friction, some in load steps. The top is first moved by a displacement; then the force
-that this took, of each step, moves it. With --moved=obstacle the body is held, and an obstacle of a random shape is moved. Told are failures: the displacement that comes back differs by more than 1e-10 of the given one, or a run
+that this took, of each step, moves it. With --moved=obstacle the body is held, and an obstacle of a random shape is moved; with --springs=1 such an obstacle
+lies on a spring, which bears a part of the force. Told are failures: the displacement that comes back differs by more than 1e-10 of the given one, or a run
 does not end as it should; where the foundation carries no more than the given force, it must be refused with exit code 5. Where all that touches yields, and does not harden, a force does not determine the displacement:
 such scenes must end, and their displacements are not compared. Told are the Newton steps of the two ways. The exit code is 1 if a scene failed, or the median of the ratio of Newton steps is above 1.2, of obstacles 1.6.
 
@@ -26,6 +27,7 @@ from generate import log_uniform
 
 SAME, MOST_RATIO = 1e-10, {"side": 1.2, "obstacle": 1.6}  # curved obstacles are looked for several times
 SAME_ON_HARDENING = 1e-8  # where all that touches yields, a force determines the displacement by hardening alone
+SAME_BUT_FOR_APPROACH = 0.05  # with friction: a path's way to the first touch is slip, and that of a tool that a force moves is none
 NO_SOLUTION = 5
 FINER, MOST_DOFS, KNOWN, HELD = 5, 40000, 0.5, 0.95  # bars: of references the target and dofs; what counts as known; how many must hold
 NOTHING = 1e-9  # of the modulus times the displacement: forces that are rounding
@@ -186,8 +188,8 @@ def steps_in_time(forces, times):
     return text
 
 
-def by_force(deck, forces, times, point=None):
-    """The same deck, its top or its obstacle moved by forces at times."""
+def by_force(deck, forces, times, point=None, stiffness=0):
+    """The same deck, its top or its obstacle moved by forces at times; the obstacle on a spring, if it has a stiffness."""
     deck = json.loads(json.dumps(deck))
     if point is None:
         del deck["Dirichlet"]["top"]["Y"]
@@ -196,6 +198,8 @@ def by_force(deck, forces, times, point=None):
     obstacle = deck["Contact"]["Obstacle"]
     obstacle[point][1] = obstacle[point][1].partition(" + ")[0]
     obstacle["Force Y"] = steps_in_time(forces, times)
+    if stiffness:
+        obstacle["Stiffness Y"] = stiffness
     return deck
 
 
@@ -218,7 +222,11 @@ def judge(options, number):
             wanted = column(rows, "top_displacement_y") if times else [float(deck["Dirichlet"]["top"]["Y"])]
         if min(map(abs, forces)) <= NOTHING * deck["Material"]["Young's Modulus"] * max(map(abs, wanted)):
             return None, "nothing touches: no force to compare", None
-        pressed = by_force(deck, forces, times or [1.0], point)
+        stiffness = 0
+        if options.springs:
+            stiffness = max(map(abs, forces)) / max(map(abs, wanted)) * log_uniform(random.Random(f"springs {options.seed} {number}"), -2, 2)
+            forces = [force + stiffness * d for force, d in zip(forces, wanted)]
+        pressed = by_force(deck, forces, times or [1.0], point, stiffness)
         code, found, rows, words = run(options.rpc, pressed, folder, "pressed")
         if code == NO_SOLUTION and "Yield Stress" in deck["Contact"]:
             if any(word in words for word in ("all that the foundation carries", "carries at most")):
@@ -230,12 +238,14 @@ def judge(options, number):
         else:
             back = column(rows, "top_displacement_y") if times else [found["force_displacement"]["top"][1]]
         off = max(abs(a - b) for a, b in zip(wanted, back)) / max(abs(a) for a in wanted)
-        if not determines(deck, given, given_rows):
+        if not stiffness and not determines(deck, given, given_rows):
             return None, "all that touches yields: not compared", None
         ratio = steps_of(found) / max(1, steps_of(given))
         of = f"{deck['Contact']['Obstacle']['Type']}, " if point else ""
         what = f"{of}{found['element']} {found.get('kinematics', 'space')}, {found['dofs']} dofs: off by {off:.1e}, Newton {steps_of(given)} -> {steps_of(found)}"
         same = SAME if point is None or not all_yields(given, given_rows) else SAME_ON_HARDENING
+        if point and "Friction Coefficient" in deck["Contact"]:
+            same = SAME_BUT_FOR_APPROACH
         return (None if len(back) == len(wanted) and off <= same else f"displacements differ by {off:.2e}: {what}"), what, ratio
 
 
@@ -346,7 +356,9 @@ def tell_bars(all_held, failed):
 
 
 def main():
-    options = trials.arguments(__doc__, 50, ("--moved", {"default": "side", "choices": ["side", "obstacle", "rigid"]}), ("--bars", {"type": int, "default": 0}))
+    options = trials.arguments(__doc__, 50, ("--moved", {"default": "side", "choices": ["side", "obstacle", "rigid"]}), ("--bars", {"type": int, "default": 0}), ("--springs", {"type": int, "default": 0}))
+    if options.springs and (options.moved != "obstacle" or options.bars):
+        sys.exit("forces.py: --springs=1 goes with --moved=obstacle without --bars; rigid.py has springs of rigid sides")
     if options.moved == "rigid" and not options.bars:
         sys.exit("forces.py: --moved=rigid goes with --bars=1; rigid.py compares rigid sides by force with the same by path")
     if options.bars:

@@ -56,7 +56,8 @@ FixedByLoad fixed_by_load(const analysis::Model &model)
     if (condition.rigid) fixed.moments.push_back(is_left_to_forces(condition, 3));
   }
   for (const auto &side : model.contact)
-    for (int c = 0; c < 3; ++c) fixed.contact[c] = fixed.contact[c] || side.obstacle.force[c];
+    for (int c = 0; c < 3; ++c)
+      if (side.obstacle.force[c]) fixed.contact[c] = side.obstacle.stiffness[c] == 0;
   return fixed;
 }
 

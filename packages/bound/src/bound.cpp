@@ -95,7 +95,7 @@ void require_covered(const analysis::Task &task)
                         ", whose resultant the stresses in equilibrium would have to have");
   for (const auto &side : task.model.contact)
     require_of_deck(!side.obstacle.is_moved(),
-                    "a force moves the obstacle of \"" + side.path +
+                    "a force or a spring moves the obstacle of \"" + side.path +
                         "\", whose resultant the stresses in equilibrium would have to have");
   for (std::size_t k = 0; k < task.model.contact.size(); ++k)
     for (std::size_t other = 0; other < k; ++other)

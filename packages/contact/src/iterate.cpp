@@ -197,7 +197,7 @@ void Iterate::move_origin(Vector &u, const Vector &internal, const Vector &appli
 {
   Vector G(internal, Teuchos::Copy);
   G.update(-1., applied, 1.);
-  if (!dirichlet_.rigid.empty()) fem::subtract_spring_forces(dirichlet_.rigid, *from_rest(u), G);
+  if (dirichlet_.has_springs()) fem::subtract_spring_forces(dirichlet_, *from_rest(u), G);
   fem::clear_prescribed(dirichlet_, G);
   take_origin(u, G);
 }

@@ -150,6 +150,20 @@ void require_finite_of_time(const ScalarField &field, const std::string &paramet
 }
 
 constexpr const char *force_names[] = {"Force X", "Force Y", "Force Z"};
+constexpr const char *stiffness_names[] = {"Stiffness X", "Stiffness Y", "Stiffness Z"};
+
+/// @throws rpc::Error (bad_input) where a parameter is to move the obstacle along a component that is not there, or that its path moves it along
+void require_movable_along(const int c, const std::string &name, const Obstacle &obstacle, const int dim,
+                           const std::string &path, const std::string &point)
+{
+  RPC_REQUIRE(c < dim, "deck: \"" << path << "->" << name << "\" moves along a component that a " << dim
+                                  << "D mesh does not have. It has X and Y; of a body of revolution Y runs along the "
+                                     "axis.");
+  RPC_REQUIRE(obstacle.path[c].is_constant(),
+              "deck: \"" << path << "->" << point << "\" must have a number as its coordinate along "
+                         << "XYZ"[c] << ", where the obstacle starts, for \"" << name << "\" moves it; got "
+                         << obstacle.path[c].text << ". Leave one of them out.");
+}
 
 /// The forces that move the obstacle, along the coordinates that have one.
 std::array<std::optional<ScalarField>, 3> forces_of(const Teuchos::ParameterList &list, const Obstacle &obstacle,
@@ -160,17 +174,26 @@ std::array<std::optional<ScalarField>, 3> forces_of(const Teuchos::ParameterList
   for (int c = 0; c < 3; ++c) {
     const std::string parameter = path + "->" + force_names[c], text = field_text(list, force_names[c]);
     if (text.empty()) continue;
-    RPC_REQUIRE(c < dim, "deck: \"" << parameter << "\" moves along a component that a " << dim
-                                    << "D mesh does not have. It has X and Y; of a body of revolution Y runs along the "
-                                       "axis.");
+    require_movable_along(c, force_names[c], obstacle, dim, path, point);
     force[c] = parse(text, parameter);
     require_finite_of_time(*force[c], parameter, text);
-    RPC_REQUIRE(obstacle.path[c].is_constant(),
-                "deck: \"" << path << "->" << point << "\" must have a number as its coordinate along "
-                           << "XYZ"[c] << ", where the obstacle starts, for \"" << force_names[c] << "\" moves it; got "
-                           << obstacle.path[c].text << ". Leave one of them out.");
   }
   return force;
+}
+
+/// The stiffnesses of springs between the obstacle and the ground, along the coordinates that have one.
+std::array<double, 3> stiffnesses_of(const Teuchos::ParameterList &list, const Obstacle &obstacle, const int dim,
+                                     const std::string &path, const std::string &point)
+{
+  std::array<double, 3> stiffness{};
+  for (int c = 0; c < 3; ++c) {
+    stiffness[c] = list.get<double>(stiffness_names[c]);
+    RPC_REQUIRE(std::isfinite(stiffness[c]) && stiffness[c] >= 0, "deck: \"" << path << "->" << stiffness_names[c]
+                                                                             << "\" must be finite and >= 0, got "
+                                                                             << stiffness[c] << ".");
+    if (stiffness[c] > 0) require_movable_along(c, stiffness_names[c], obstacle, dim, path, point);
+  }
+  return stiffness;
 }
 
 /// The coordinates of a point as functions of time alone.
@@ -211,6 +234,12 @@ Teuchos::ParameterList valid_obstacle_parameters()
               std::string("Force in ") + (name + 6) +
                   " on the obstacle [N], in the plane per m, axisymmetric on the whole circumference: it moves along " +
                   (name + 6) + " as far as the force moves it. A number or an expression of t.");
+  for (const char *const name : stiffness_names)
+    valid.set(name, 0.,
+              std::string("Stiffness of a spring in ") + (name + 10) +
+                  " between the obstacle and the ground [N/m], in the plane per m, axisymmetric on the whole "
+                  "circumference; >= 0, alone or with Force " +
+                  (name + 10) + ". At rest where the obstacle starts.");
   return valid;
 }
 
@@ -226,10 +255,11 @@ Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, con
       RPC_REQUIRE(list.getEntry(p.name).isDefault(),
                   "deck: \"" << path << "\" has a \"" << p.name
                              << "\" and no \"Type\", so that there is no obstacle. Types: " << types);
-  for (const char *const name : force_names)
-    RPC_REQUIRE(!list.getEntry("Type").isDefault() || list.getEntry(name).isDefault(),
-                "deck: \"" << path << "\" has a \"" << name
-                           << "\" and no \"Type\", so that there is no obstacle to move. Types: " << types);
+  for (const auto *const names : {&force_names, &stiffness_names})
+    for (const char *const name : *names)
+      RPC_REQUIRE(!list.getEntry("Type").isDefault() || list.getEntry(name).isDefault(),
+                  "deck: \"" << path << "\" has a \"" << name
+                             << "\" and no \"Type\", so that there is no obstacle to move. Types: " << types);
   if (type == "none") return {}; // switches an obstacle off, whatever it was
   const auto choice = std::find_if(all.begin(), all.end(), [&](const Choice &c) { return c.is(type); });
   RPC_REQUIRE(choice != all.end(),
@@ -249,6 +279,7 @@ Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, con
   for (int c = 0; c < dim; ++c) obstacle.point[c] = obstacle.path[c]({});
   obstacle.origin = obstacle.point;
   obstacle.force = forces_of(list, obstacle, dim, path, choice->kind.point, parse);
+  obstacle.stiffness = stiffnesses_of(list, obstacle, dim, path, choice->kind.point);
   return obstacle;
 }
 

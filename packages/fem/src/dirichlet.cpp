@@ -99,8 +99,8 @@ std::unordered_map<LO, Prescribed> prescribed_dofs(const Discretization &d,
       scale[k][c] = max_all(mesh.comm(), largest);
       RPC_REQUIRE(!condition.floats[c] || scale[k][c] == 0,
                   "deck: \"" << path << "->" << component_name[c]
-                             << "\" must be 0 where a force moves the obstacle along " << component_name[c] << ", got "
-                             << scale[k][c] << " [m] in size. Hold the side, and let the force move the obstacle.");
+                             << "\" must be 0 where a force or a spring moves the obstacle along " << component_name[c]
+                             << ", got " << scale[k][c] << " [m] in size. Hold the side, and let the obstacle move.");
       for (std::size_t n = 0; n < nodes.size(); ++n) {
         Prescribed &dof = prescribed[rpc::dof(dim, nodes[n], c)];
         const int other = dof.condition;
@@ -292,6 +292,12 @@ DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<Dirichle
       KOKKOS_LAMBDA(const LO i) { flag(i) = from(i) != 0; });
   Kokkos::fence();
   dirichlet.tied = tied_unknowns(d, conditions, dirichlet.condition, dirichlet.rigid);
+  dirichlet.first_floating = static_cast<int>(moved_by_force(conditions).size());
+  for (const int c : floating_components(conditions)) {
+    double stiffness = 0;
+    for (const auto &condition : conditions) stiffness = std::max(stiffness, condition.float_stiffness[c]);
+    dirichlet.float_stiffness.push_back(stiffness);
+  }
   if (dirichlet.tied && !dirichlet.rigid.empty()) part_from_modes(*dirichlet.tied, dirichlet.rigid, *dirichlet.value);
   return dirichlet;
 }

@@ -142,7 +142,10 @@ void add_rows_of_tied(const Discretization &d, const Parts &parts, const Dirichl
       first = std::min(first, of_node(nodes.back()));
       last = std::max(last, of_node(nodes.back()));
     }
-    RPC_REQUIRE(min_all(comm, first) == max_all(comm, last),
+    first = min_all(comm, first);
+    last = max_all(comm, last);
+    component = max_all(comm, component);
+    RPC_REQUIRE(first == last,
                 "deck: a force of \"Dirichlet\" moves a side of several parts of the body as one. Name a side of each "
                 "part, with a force for each. An obstacle that a force moves goes with a body of one part alone.");
     const HostPoints x = node_positions(*d.mesh, device_values(nodes, "rpc::fem::tied_nodes"));
@@ -150,6 +153,16 @@ void add_rows_of_tied(const Discretization &d, const Parts &parts, const Dirichl
     for (std::size_t i = 0; i < nodes.size(); ++i)
       for (int c = 0; c < dim; ++c) middle[c] += x(i, c) / tied.square[j];
     middle = summed(comm, middle);
+    const int floating = j - dirichlet.first_floating;
+    if (floating >= 0 && dirichlet.float_stiffness[floating] > 0) { // its spring stops the mean
+      const Part &part = parts.part[last];
+      double arm[3] = {0, 0, 0}, unit[3] = {0, 0, 0};
+      for (int c = 0; c < dim; ++c) arm[c] = (middle[c] - part.centre[c]) / part.radius;
+      unit[component] = 1;
+      RigidMotion row{};
+      along_modes(dim, arm, unit, row.data());
+      rows[last].push_back(row);
+    }
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const Part &part = parts.part[last];
       double arm[3] = {0, 0, 0}, unit[3] = {0, 0, 0};

@@ -194,6 +194,32 @@ std::vector<int> floating_components(const std::vector<DirichletCondition> &cond
   return components;
 }
 
+bool DirichletDofs::has_springs() const
+{
+  const auto any = [](const std::vector<double> &stiffness) {
+    return std::any_of(stiffness.begin(), stiffness.end(), [](const double each) { return each > 0; });
+  };
+  return any(float_stiffness) ||
+         std::any_of(rigid.begin(), rigid.end(), [&](const RigidSide &side) { return any(side.stiffness); });
+}
+
+void subtract_spring_forces(const DirichletDofs &dirichlet, const Vector &u, Vector &f)
+{
+  if (!dirichlet.has_springs()) return;
+  subtract_spring_forces(dirichlet.rigid, u, f);
+  if (dirichlet.float_stiffness.empty()) return;
+  const TiedUnknowns &tied = *dirichlet.tied;
+  const std::vector<double> moved = means(tied, u);
+  std::vector<double> share(tied.size(), 0.);
+  for (std::size_t j = 0; j < dirichlet.float_stiffness.size(); ++j) {
+    const std::size_t group = dirichlet.first_floating + j;
+    share[group] = dirichlet.float_stiffness[j] * moved[group] / tied.square[group];
+  }
+  Vector forces(f.getMap());
+  set_members(tied, share, forces);
+  f.update(1., forces, 1.);
+}
+
 RCP<Vector> forces_on_floating(const Discretization &d, const DirichletDofs &dirichlet,
                                const std::vector<DirichletCondition> &conditions, const std::array<double, 3> &force)
 {
@@ -248,6 +274,10 @@ RCP<const TiedStiffness> tied_stiffness(const Discretization &d, const Prescribe
   const int n = dirichlet.tied->size();
   std::vector<double> springs(static_cast<std::size_t>(n) * n, 0.);
   add_springs(dirichlet.rigid, n, springs);
+  for (std::size_t j = 0; j < dirichlet.float_stiffness.size(); ++j) {
+    const std::size_t group = dirichlet.first_floating + j;
+    springs[group * n + group] += dirichlet.float_stiffness[j];
+  }
   return rcp(new TiedStiffness(std::move(K), *dirichlet.tied, std::move(force), springs));
 }
 

@@ -19,7 +19,7 @@ std::vector<RigidSide> rigid_sides(const Discretization &d, const std::vector<Di
 /// How far an unknown mode of a rigid side, a column of the motions times T, moves a node along a component.            (2.9b)
 double along_mode(const RigidSide &side, int mode, const double *arm, int component);
 
-/// (groups, groups) += the stiffness of the sides' springs against tied unknowns.
+/// (groups, groups) += the stiffness of the rigid sides' springs against tied unknowns.
 void add_springs(const std::vector<RigidSide> &sides, int groups, std::vector<double> &stiffness);
 
 /// A force, moment or motion of the whole side. @throws rpc::Error (bad_input) if it is not finite

@@ -26,6 +26,7 @@ std::vector<fem::DirichletCondition> held_sides(std::vector<fem::DirichletCondit
       if (condition.holds(c)) condition.displacement[c] = ScalarField(0.);
       condition.force[c].reset();
       condition.floats[c] = false;
+      condition.float_stiffness[c] = 0;
     }
   for (auto &condition : conditions) condition.rigid.reset();
   return conditions;

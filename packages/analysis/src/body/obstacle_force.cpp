@@ -17,10 +17,26 @@ namespace
 
 constexpr char component_letter[] = "XYZ";
 
-/// `"Contact->Obstacle->Force Y"`, in quotation marks.
+/// `"Contact->Obstacle->Force Y"`, in quotation marks; of a spring alone its stiffness.
 std::string force_parameter(const contact::ContactOptions &side, const int c)
 {
-  return '"' + side.path + "->Obstacle->Force " + component_letter[c] + '"';
+  return '"' + side.path + "->Obstacle->" + (side.obstacle.force[c] ? "Force " : "Stiffness ") + component_letter[c] +
+         '"';
+}
+
+/// The force that the deck gives along a component at the obstacle's time [N]; 0 where it gives none.
+double given_force(const contact::Obstacle &obstacle, const int c)
+{
+  return obstacle.force[c] ? (*obstacle.force[c])({}) : 0;
+}
+
+/// How far along a force its springs let the obstacle go where nothing touches [m]; infinite without a spring.
+double way_to_springs(const contact::Obstacle &obstacle, const double force)
+{
+  double way = std::numeric_limits<double>::infinity();
+  for (const double stiffness : obstacle.stiffness)
+    if (stiffness > 0) way = std::min(way, force / stiffness);
+  return way;
 }
 
 } // namespace
@@ -45,7 +61,7 @@ Model seen_from_obstacle(Model model)
                            << "\" in \"Dirichlet\", or press the body with a force there, "
                               "\"Dirichlet->NAME->Force Y\", and leave the obstacles at rest.");
   for (int c = 0; c < 3; ++c) {
-    if (!pressed->obstacle.force[c]) continue;
+    if (!pressed->obstacle.is_moved_along(c)) continue;
     const std::string parameter = force_parameter(*pressed, c);
     RPC_REQUIRE(model.kinematics != fem::Kinematics::axisymmetric || c == 1,
                 "deck: " << parameter
@@ -62,6 +78,7 @@ Model seen_from_obstacle(Model model)
                                                 << "\" are both to move along one direction, along which nothing is "
                                                    "held then. Leave one of them out.");
       condition.floats[c] = condition.displacement[c].has_value();
+      condition.float_stiffness[c] = condition.floats[c] ? pressed->obstacle.stiffness[c] : 0;
       held = held || condition.floats[c];
     }
     RPC_REQUIRE(held, "deck: " << parameter << " presses a body that nothing holds along " << component_letter[c]
@@ -70,7 +87,8 @@ Model seen_from_obstacle(Model model)
   return model;
 }
 
-std::array<double, 3> force_on_floating(const fem::Discretization &d, const Model &now, const Vector &load)
+std::array<double, 3> force_on_floating(const fem::Discretization &d, const Model &now, const Point &obstacle,
+                                        const Vector &load)
 {
   const contact::ContactOptions &pressed = *pressed_by_force(now);
   std::vector<double> sum(3, 0.);
@@ -79,12 +97,12 @@ std::array<double, 3> force_on_floating(const fem::Discretization &d, const Mode
   sum = summed(d.mesh->comm(), sum);
   std::array<double, 3> force{};
   for (int c = 0; c < 3; ++c) {
-    if (!pressed.obstacle.force[c]) continue;
-    const double given = (*pressed.obstacle.force[c])({});
+    if (!pressed.obstacle.is_moved_along(c)) continue;
+    const double given = given_force(pressed.obstacle, c);
     RPC_REQUIRE(std::isfinite(given), "deck: " << force_parameter(pressed, c) << " must be finite, got " << given
                                                << " from " << pressed.obstacle.force[c]->text
                                                << " at t = " << pressed.obstacle.force[c]->time);
-    force[c] = -(given + sum[c]); // (3.17b)
+    force[c] = -(given - pressed.obstacle.stiffness[c] * obstacle[c] + sum[c]); // (3.17b), (3.17e)
   }
   return force;
 }
@@ -93,8 +111,7 @@ Point approach(const fem::Discretization &d, const Model &now)
 {
   const contact::ContactOptions &pressed = *pressed_by_force(now);
   Point along{};
-  for (int c = 0; c < d.dim(); ++c)
-    if (pressed.obstacle.force[c]) along[c] = (*pressed.obstacle.force[c])({});
+  for (int c = 0; c < d.dim(); ++c) along[c] = given_force(pressed.obstacle, c);
   const double size = length(along);
   if (!(size > 0) || !std::isfinite(size)) return {}; // refused as a load that presses nothing
   const Point towards = scaled(-1 / size, along);     // of the body, seen from the obstacle
@@ -107,7 +124,7 @@ Point approach(const fem::Discretization &d, const Model &now)
     for (int c = 0; c < d.dim(); ++c) place[c] = x(n, c);
     if (const auto distance = contact::distance_along(pressed.obstacle, place, towards)) way = std::min(way, *distance);
   }
-  way = min_all(d.mesh->comm(), way);
+  way = std::min(min_all(d.mesh->comm(), way), way_to_springs(pressed.obstacle, size));
   if (way == nowhere) {
     std::ostringstream text;
     text << "contact: the force of \"" << pressed.path << "->Obstacle\" moves the obstacle along (" << along[0] / size
@@ -138,14 +155,25 @@ double work_on_obstacle(const Problem &problem, const Step &step, const Point &w
   const Model now = problem.model().seen_at(step.time);
   const contact::ContactOptions *const pressed = pressed_by_force(now);
   double work = 0;
-  for (int c = 0; c < 3; ++c)
-    if (pressed->obstacle.force[c]) work += (*pressed->obstacle.force[c])({}) * (step.obstacle[c] + way[c]);
+  for (int c = 0; c < 3; ++c) work += given_force(pressed->obstacle, c) * (step.obstacle[c] + way[c]);
   return work;
+}
+
+double spring_energy_of_obstacle(const Problem &problem, const Step &step, const Point &way)
+{
+  const contact::ContactOptions *const pressed = pressed_by_force(problem.model());
+  double energy = 0;
+  for (int c = 0; pressed && c < 3; ++c) {
+    const double moved = step.obstacle[c] + way[c];
+    energy += 0.5 * pressed->obstacle.stiffness[c] * moved * moved;
+  }
+  return energy;
 }
 
 bool obstacle_rests(const Problem &problem, const StepSolution &s, const double tolerance)
 {
-  return !(length(left_to_go(problem, s)) > tolerance * s.u->normInf());
+  const double rounding = std::numeric_limits<double>::epsilon() * length(s.step.obstacle);
+  return !(length(left_to_go(problem, s)) > tolerance * s.u->normInf() + rounding);
 }
 
 void rest_where_led(const Problem &problem, const Point &before, const double tolerance, StepSolution &s)

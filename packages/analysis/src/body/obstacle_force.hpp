@@ -3,12 +3,12 @@
 
 #include "rpc/analysis/solve_step.hpp"
 
-/// An obstacle that a force moves, seen from the obstacle: there the sides that hold the body move, all by the same amount, and their displacement is
-/// an unknown of the Newton system.                                                                  doc/theory.md (3.17)
+/// An obstacle that a force or a spring moves, seen from the obstacle: there the sides that hold the body move, all by the same amount, and
+/// their displacement is an unknown of the Newton system.                                                                  doc/theory.md (3.17)
 namespace rpc::analysis
 {
 
-/// The contact side whose obstacle a force moves; null: there is none.
+/// The contact side whose obstacle a force or a spring moves; null: there is none.
 const contact::ContactOptions *pressed_by_force(const Model &model);
 
 /// The same model, in which the held sides float along the components of the force.
@@ -17,16 +17,21 @@ Model seen_from_obstacle(Model model);
 
 /// What the sides that float are pressed with in place of the obstacle, along each component: all loads of the body and the force on the obstacle, the
 /// other way round [N]. Collective.
-/// @param now  seen at the time   @param load  (owned dofs) of the body [N]
-std::array<double, 3> force_on_floating(const fem::Discretization &d, const Model &now, const Vector &load);
+/// @param now  seen at the time   @param obstacle  how far it is from where it starts [m]: so far its springs are stretched
+/// @param load  (owned dofs) of the body [N]
+std::array<double, 3> force_on_floating(const fem::Discretization &d, const Model &now, const Point &obstacle,
+                                        const Vector &load);
 
-/// How far the force moves the obstacle until it meets the first node of its side [m]; less than 0: back to where it meets one alone. Collective.
+/// How far the force moves the obstacle until it meets the first node of its side, or its springs stop it [m]; less than 0: back to where it meets
+/// a node alone. Collective.
 /// @param now  seen at the time, the obstacle where it starts
 /// @throws rpc::Error (no_solution) where it passes the side by
 Point approach(const fem::Discretization &d, const Model &now);
 
 /// Work of the force on the obstacle from where it starts to where it is seen, and a way further [J], in 2D per m.   (3.17)
 double work_on_obstacle(const Problem &problem, const Step &step, const Point &way);
+/// What its springs have taken up there [J], in 2D per m.                                                            (3.17e)
+double spring_energy_of_obstacle(const Problem &problem, const Step &step, const Point &way);
 /// How far a solution's obstacle is still to go [m]: its held sides have moved the other way. Collective.
 Point left_to_go(const Problem &problem, const StepSolution &s);
 /// Whether that is no more than a tolerance, in units of the largest displacement: the contact points were seen from where the obstacle is. Collective.

@@ -125,6 +125,16 @@ Point obstacle_displacement(const Model &model, const double t, const Point &obs
   return pressed ? foundations_moved(model, 0, t, {}, obstacle)[pressed - model.contact.data()] : Point{};
 }
 
+std::optional<Point> spring_force_on_obstacle(const Model &model, const Point &obstacle)
+{
+  const auto *const pressed = pressed_by_force(model);
+  if (pressed == nullptr || !pressed->obstacle.has_springs()) return std::nullopt;
+  Point force{};
+  for (int c = 0; c < 3; ++c)
+    if (pressed->obstacle.stiffness[c] > 0) force[c] = -pressed->obstacle.stiffness[c] * obstacle[c];
+  return force;
+}
+
 double time_at_rest(const double first)
 {
   return std::min(0., first);
@@ -213,7 +223,7 @@ Step Problem::step(const double t, const MultiVector *const dents, const Memory 
       {}};
   const auto load = loads_of(d, now);
   if (by_force) {
-    const auto force = force_on_floating(d, now, *load);
+    const auto force = force_on_floating(d, now, moved, *load);
     step.on_floating = fem::forces_on_floating(d, dirichlet, now.dirichlet, force);
   }
   fem::add_moving_forces(dirichlet, now.dirichlet, *load);

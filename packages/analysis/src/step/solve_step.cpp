@@ -405,8 +405,9 @@ void read_results(const Problem &problem, const StepOptions &options, SolverStat
                                 problem.model().materials, *s.state.displacement, s.contact); // (3.15)
   s.energy_norm_squared = s.uzawa.residuals.internal.energy_norm_squared;
   const double elastic = 0.5 * s.energy_norm_squared - work_of_loads(problem, s) +
-                         fem::spring_energy(s.step.elastic.dirichlet.rigid, *s.u); // (1.2), (2.9c)
-  s.energy = contact::energy(elastic, s.step.contact, s.state);                    // paper (6); (5.14)
+                         fem::spring_energy(s.step.elastic.dirichlet.rigid, *s.u) + // (1.2), (2.9c)
+                         spring_energy_of_obstacle(problem, s.step, left_to_go(problem, s));
+  s.energy = contact::energy(elastic, s.step.contact, s.state); // paper (6); (5.14)
   s.reactions = reactions(problem, s);
 }
 

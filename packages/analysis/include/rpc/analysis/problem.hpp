@@ -13,6 +13,7 @@
 #include "rpc/solver/mixed_form.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,9 @@ std::vector<Point> foundations_moved(const Model &model, double from, double to,
 /// How far the obstacle that a force moves is from where it was at t = 0 [m]; 0 where there is none.
 /// @param obstacle  what the force has moved it by [m]
 Point obstacle_displacement(const Model &model, double t, const Point &obstacle);
+/// With what its springs draw an obstacle back that has moved so far [N], in 2D per m; nothing where none has a spring.     doc/theory.md (3.17e)
+/// @param obstacle  what forces and springs have moved it by [m]
+std::optional<Point> spring_force_on_obstacle(const Model &model, const Point &obstacle);
 
 /// What acts on a body at one time: cheap to make again. Plain data.
 struct Step {

@@ -22,10 +22,15 @@ struct Obstacle {
   Point origin{}; ///< where `point` is at t = 0 [m]
   /// Along a coordinate, the force that moves it [N], of time alone; nothing: it follows its path.        doc/theory.md (3.17)
   std::array<std::optional<ScalarField>, 3> force = {};
+  std::array<double, 3>
+      stiffness{}; ///< of a spring between it and the ground along a coordinate [N/m]; 0: none (3.17e)
 
   bool exists() const { return surface.has_value(); }
-  bool is_moved() const { return force[0] || force[1] || force[2]; } ///< by a force
-  bool moves() const;                                                ///< with time, or by a force
+  /// Whether a force or a spring says where it is along a coordinate.
+  bool is_moved_along(const int c) const { return force[c] || stiffness[c] > 0; }
+  bool is_moved() const { return is_moved_along(0) || is_moved_along(1) || is_moved_along(2); }
+  bool has_springs() const { return stiffness[0] > 0 || stiffness[1] > 0 || stiffness[2] > 0; }
+  bool moves() const; ///< with time, or by a force or a spring
   /// The same, with `point` where its path has it at a time.
   Obstacle seen_at(double t) const;
 };

@@ -29,6 +29,8 @@ struct DirichletCondition {
   std::optional<RigidMotions> rigid{}; ///< instead of both, for an entry of `Rigid`
   /// Components along which all sides that are held at 0 move as one, by one force: seen from an obstacle that a force moves.   (3.17)
   std::array<bool, 3> floats{};
+  std::array<double, 3>
+      float_stiffness{}; ///< of the spring to the ground on which all that floats hangs [N/m]  (3.17e)
 
   /// Whether the side's nodes are not free along a component.
   bool holds(const int component) const { return rigid || displacement[component] || force[component]; }
@@ -70,7 +72,11 @@ struct DirichletDofs {
   GO num_fixed = 0;  ///< over all ranks
   std::shared_ptr<const TiedUnknowns>
       tied; ///< those that forces move, a group for each component of a side, for each component along which sides float, and for each motion of a rigid side; null: none
-  std::vector<RigidSide> rigid; ///< of the deck's `Rigid`
+  std::vector<RigidSide> rigid;        ///< of the deck's `Rigid`
+  std::vector<double> float_stiffness; ///< (components along which sides float) of springs to the ground [N/m]
+  int first_floating = 0;              ///< group of the first of these components
+
+  bool has_springs() const;
 };
 
 /// u_r = 0 on the axis of an axisymmetric body is prescribed without a condition. Collective.
@@ -129,6 +135,9 @@ struct ElasticProblem {
 /// @param dirichlet     of the unknowns that were eliminated
 ElasticProblem elastic_problem(const Discretization &d, const PrescribedCouplings &couplings, RCP<Vector> applied_load,
                                DirichletDofs dirichlet);
+
+/// f -= the forces with which springs draw what they hold to the ground, where the body is displaced by u; collective.
+void subtract_spring_forces(const DirichletDofs &dirichlet, const Vector &u, Vector &f);
 
 /// load += the forces that move sides as one, in equal parts on their nodes. Collective.
 /// @throws rpc::Error (bad_input) if one is not finite
