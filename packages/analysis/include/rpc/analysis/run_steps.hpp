@@ -75,9 +75,10 @@ std::optional<Found> run_steps(const Task &task, const double after, const Comm 
     }
     const int every = task.steps.checkpoint_every;
     checkpoint_due |= every > 0 && s->history.size() % every == 0;
-    if (!checkpoint_due || interrupted(comm)) continue;
+    const bool last = t == task.steps.times.back();
+    if (!checkpoint_due || (!last && interrupted(comm))) continue; // before another step, a signal has one kept
     checkpoint_due = !steps.keep();
-    if (t < task.steps.times.back()) steps.start_anew();
+    if (!last) steps.start_anew();
   }
   if (s) judge_balance(task, *s);
   return s;
