@@ -379,6 +379,13 @@ class Judgement(unittest.TestCase):
         options = types.SimpleNamespace(seed=1, rows=2, only=None)
         self.assertEqual(suite.stale(options, [outcome(0, "a bar of force"), outcome(1)], known), [1])
 
+    def test_files_of_relative_paths_are_found_from_the_folders_of_rows(self):
+        options = suite.arguments(["--program=build/rpc", "--openmp=other/rpc", "--preload=build/a.so:b.so"])
+        here = pathlib.Path.cwd()
+        self.assertEqual((options.program, options.openmp), (str(here / "build/rpc"), str(here / "other/rpc")))
+        self.assertEqual(options.preload, f"{here / 'build/a.so'}:{here / 'b.so'}")
+        self.assertIsNone(suite.arguments([]).preload)
+
 
 if __name__ == "__main__":
     unittest.main()

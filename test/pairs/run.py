@@ -29,7 +29,12 @@ HERE = pathlib.Path(__file__).resolve().parent
 MOST_PAIRS = 3  # told of one kind of failure
 
 
-def arguments():
+def absolute(paths):
+    """The same files from any folder: one, several with a colon between them, or None."""
+    return paths and ":".join(str(pathlib.Path(path).resolve()) for path in paths.split(":"))
+
+
+def arguments(given=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default="build/rpc")
     parser.add_argument("--openmp", help="a program with OpenMP; without one there are no rows of threads")
@@ -39,13 +44,14 @@ def arguments():
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--one-rank", action="store_true", help="of a program without MPI")
     parser.add_argument("--mpiexec", default="mpirun --oversubscribe --bind-to none")
-    parser.add_argument("--preload", help="a library for runs on several ranks that share cores")
+    parser.add_argument("--preload", help="a library for runs on several ranks that share cores, or several: A:B")
     parser.add_argument("--keep", default="pairs", help="folder for the decks of rows that fail")
     parser.add_argument("--keep-all", action="store_true")
     parser.add_argument("--update", action="store_true", help="writes the rows of this array that fail by known faults into the list of --known")
     parser.add_argument("--known", default=str(HERE / "known.json"))
-    options = parser.parse_args()
-    options.program = str(pathlib.Path(options.program).resolve())
+    options = parser.parse_args(given)
+    # the program runs in the folders of the rows
+    options.program, options.openmp, options.preload = (absolute(each) for each in (options.program, options.openmp, options.preload))
     options.keep_all |= options.only is not None
     return options
 
