@@ -5,6 +5,7 @@
 #include "congruent_cells.hpp"
 #include "fill_entries.hpp"
 #include "rpc/core/error.hpp"
+#include "rpc/core/parallel.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <array>
@@ -249,13 +250,40 @@ RCP<MultiVector> node_coordinates(const Discretization &d)
   return result;
 }
 
+namespace
+{
+
+/// Whether a rotation about a point leaves a node of any rank at rest; collective.
+/// @param coords  (owned nodes; dim) [m]
+bool rests_at_a_node(const MultiVector &coords, const Kokkos::Array<double, 3> &centre)
+{
+  const int dim = static_cast<int>(coords.getNumVectors());
+  const auto x = coords.getLocalViewDevice(Tpetra::Access::ReadOnly);
+  int any = 0;
+  Kokkos::parallel_reduce(
+      "rpc::fem::rests_at_a_node", device_range(static_cast<LO>(x.extent(0))),
+      KOKKOS_LAMBDA(const LO node, int &rests) {
+        for (int i = 0; i < dim; ++i)
+          for (int j = i + 1; j < dim; ++j)
+            if (x(node, i) == centre[i] && x(node, j) == centre[j]) rests = 1;
+      },
+      Kokkos::Max<int>(any));
+  return max_all(*coords.getMap()->getComm(), any) > 0;
+}
+
+} // namespace
+
 RCP<MultiVector> rigid_body_modes(const Discretization &d)
 {
   const int dim = d.dim();
   const auto coords = node_coordinates(d);
   std::array<double, 3> mean{};
   coords->meanValue(Teuchos::ArrayView<double>(mean.data(), dim));
-  const Kokkos::Array<double, 3> centre{{mean[0], mean[1], mean[2]}};
+  Kokkos::Array<double, 3> centre{{mean[0], mean[1], mean[2]}};
+  // MueLu throws where a mode is 0 on an aggregate, which may be one node, and on that node's rank alone.
+  const double step = mesh::diameter(*d.mesh) / 1024;
+  while (rests_at_a_node(*coords, centre))
+    for (int c = 0; c < dim; ++c) centre[c] += step / (1 + c);
   const auto result = rcp(new MultiVector(d.owned_dofs, dim == 2 ? 3 : 6)); // zero
   const auto modes = result->getLocalViewDevice(Tpetra::Access::ReadWrite);
   const auto x = coords->getLocalViewDevice(Tpetra::Access::ReadOnly);

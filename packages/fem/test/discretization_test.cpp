@@ -150,6 +150,25 @@ TEST(NodeCoordinates, AreThoseOfTheMesh)
     for (int c = 0; c < 2; ++c) EXPECT_EQ(values(n, c), point_of(d, n)[c]);
 }
 
+TEST(RigidBodyModes, AreZeroAtNoNode)
+{
+  for (const int dim : {2, 3}) { // the middle node lies at the centroid, in space others lie on lines through it
+    mesh::BoxOptions box;
+    box.lower.assign(dim, 0.);
+    box.upper.assign(dim, 1.);
+    box.cells.assign(dim, 2);
+    const auto d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, world())), {});
+    const auto modes = fem::rigid_body_modes(d);
+    const auto values = modes->getLocalViewHost(Tpetra::Access::ReadOnly);
+    for (LO n = 0; n < d.mesh->num_owned_nodes(); ++n)
+      for (std::size_t mode = 0; mode < modes->getNumVectors(); ++mode) {
+        double most = 0;
+        for (int c = 0; c < dim; ++c) most = std::max(most, std::abs(values(dof(dim, n, c), mode)));
+        EXPECT_GT(most, 1e-4) << "mode " << mode;
+      }
+  }
+}
+
 TEST(RigidBodyModes, AreTranslationsAndRotationsAboutTheCentroid)
 {
   for (const auto &element : elements()) {
