@@ -95,6 +95,17 @@ class ObstacleForces(WrittenDeckTestCase):
         self.assertAlmostEqual(found["reaction_force"]["bottom"][1], 31, delta=31 * SAME)
         self.assertLess(found["obstacle_displacement"][1], -6)
 
+    def test_a_place_at_which_the_force_that_a_tool_takes_jumps_is_found_between_two(self):
+        # Three nodes touch and yield, all but for friction that is all of the force; from below the place a fourth begins to touch.
+        cone = ("Type: cone, Axis: [0.0, 1.0], Slope: 0.13687668491206686, Tip Radius: 3.290138423748068, "
+                "Point: [0.992840369380968, -0.0007880879981054542], Force Y: 2083934.224630031")
+        law = "Yield Stress: 11166060.513133796\n    Friction Coefficient: 0.05503298101677036"
+        deck = written(BOX, cone, "P1", law).replace("[2.0, 1.0]", "[2.4870137989238374, 1.0]").replace("[16, 8]", "[40, 19]").replace("top", "bottom")
+        deck = deck.replace("bottom: {X", "top: {X").replace("Young's Modulus: 2000.0", "Young's Modulus: 11528961291.460278").replace("Ratio: 0.3", "Ratio: 0.45")
+        found = self.solve("jumps", deck)
+        self.assertAlmostEqual(found["contact_force"][1], 2083934.224630031, delta=1e-8 * 2083934)
+        self.assertAlmostEqual(found["yielded_length"], found["contact_length"], delta=1e-12)
+
     def test_a_history_of_forces_follows_its_dents_and_its_work_is_that_of_the_path(self):
         self.solve("pressed", written(BOX, by_force(ROLLER, FORCE), law=YIELDS, more=STEPS))
         (moved,) = self.columns("pressed", "obstacle_displacement_y")
@@ -137,7 +148,7 @@ class ObstacleForces(WrittenDeckTestCase):
         self.refuse(written(BOX, "Force Y: -1.0"), BAD_INPUT, ["no obstacle to move"])
         ram = written(BOX, by_force(ROLLER, "-1.0")).replace("Y: 0.0", "Force Y: 1.0")
         self.refuse(ram, BAD_INPUT, ["both to move along one direction"])
-        self.refuse(written(BOX, by_force(ROLLER, "-1.0")).replace("Y: 0.0", "Y: 0.1"), BAD_INPUT, ["must be 0 where a force moves the obstacle"])
+        self.refuse(written(BOX, by_force(ROLLER, "-1.0")).replace("Y: 0.0", "Y: 0.1"), BAD_INPUT, ["must be 0 where a force or a spring moves the obstacle"])
         self.refuse(written(BOX, by_force(ROLLER, "-1.0")).replace(", Y: 0.0", ""), BAD_INPUT, ["nothing holds along Y"])
         two = written(BOX, by_force(ROLLER, "-1.0")).replace("Side: top", "Side: top\n    Sides: {right: {Gap: 1.0}}")
         self.refuse(two, BAD_INPUT, ["is another foundation"])

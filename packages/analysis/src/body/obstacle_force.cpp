@@ -170,6 +170,14 @@ double spring_energy_of_obstacle(const Problem &problem, const Step &step, const
   return energy;
 }
 
+Point ObstaclePlaces::next(const Point &place, const Point &way)
+{
+  if (last_ && inner(last_->way, way) < 0) opposed_ = last_;
+  last_ = Led{place, way};
+  const Point between = opposed_ ? difference(opposed_->place, place) : Point{};
+  return difference(place, scaled(-1, !opposed_ || 2 * length(way) < length(between) ? way : scaled(0.5, between)));
+}
+
 bool obstacle_rests(const Problem &problem, const StepSolution &s, const double tolerance)
 {
   const double rounding = std::numeric_limits<double>::epsilon() * length(s.step.obstacle);

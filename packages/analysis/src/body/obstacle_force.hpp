@@ -34,6 +34,21 @@ double work_on_obstacle(const Problem &problem, const Step &step, const Point &w
 double spring_energy_of_obstacle(const Problem &problem, const Step &step, const Point &way);
 /// How far a solution's obstacle is still to go [m]: its held sides have moved the other way. Collective.
 Point left_to_go(const Problem &problem, const StepSolution &s);
+/// Where searches see the obstacle, one after the other.                                                              (3.17c)
+class ObstaclePlaces
+{
+public:
+  /// Where their solutions lead it to and fro between two places, halfway between them: points that begin to touch may make the force that it takes
+  /// jump there.
+  /// @param place  where it was seen [m]   @param way  that the solution leads it from there [m]
+  Point next(const Point &place, const Point &way);
+
+private:
+  struct Led {
+    Point place, way;
+  };
+  std::optional<Led> last_, opposed_;
+};
 /// Whether that is no more than a tolerance, in units of the largest displacement: the contact points were seen from where the obstacle is. Collective.
 bool obstacle_rests(const Problem &problem, const StepSolution &s, double tolerance);
 

@@ -319,6 +319,7 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
   StepSolution s;
   std::optional<StepSolution> searched; // what the searches before have taken
   Point way_before{};
+  ObstaclePlaces places;
   Headway searches({1, Headway::unlimited, Headway::unlimited, step_rules.most_searches - 1});
   Headway ways({headway_rules.falls, Headway::unlimited, step_rules.most_searches - 1}); // of the obstacle, which fall
   while (true) {
@@ -329,7 +330,7 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
     ++last_.solves;
     add_work(s, last_);
     s.prediction_seconds += std::exchange(prediction_seconds, 0);
-    const Point way = left_to_go(*problem_, s);
+    const Point way = left_to_go(*problem_, s), seen = s.step.obstacle, place = places.next(seen, way);
     const bool rounds = searched && length(way) >= length(way_before);
     const bool rests =
         !is_rough && obstacle_rests(*problem_, s, (rounds ? step_rules.of_rounding : 1.) * options.uzawa.tolerance);
@@ -337,14 +338,14 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
     if (searched) add_searched(*searched, s);
     if (!s.uzawa.converged) return s;
     if ((!on_foundation && rests) ||
-        (by_force ? ways.add(length(way)) : searches.take(true)) == Headway::Answer::stuck) {
+        (by_force ? ways.add(length(difference(place, seen))) : searches.take(true)) == Headway::Answer::stuck) {
       if (!rests) give_up_search(way, s);
       break;
     }
     const auto next = on_foundation ? met_at(*s.u, s.step.obstacle) : met;
     if (rests && (!on_foundation || settled(*met, *next, kept_.memory->foundations))) break;
     met = next;
-    step = problem_->step(t, met.get(), memory(), by_force ? &s.step.obstacle : nullptr);
+    step = problem_->step(t, met.get(), memory(), by_force ? &place : nullptr);
     starts = {{onto(s.step.contact, step.contact, s.state)}, {}};
     if (by_force) searched = s;
     way_before = way;
