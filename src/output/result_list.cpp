@@ -60,6 +60,23 @@ std::vector<Result> contact_results(const contact::ContactSums &sums, const Resu
   return all;
 }
 
+/// Gives the components of the contact force error bars of their own, where some are smaller than that of the vector.          (10.7f)
+void add_bars_of_components(Result &force, const std::vector<double> &bars)
+{
+  const std::size_t dim = force.value.size();
+  if (bars.size() < dim || !(force.error_bar > 0)) return;
+  double squares = 0;
+  std::string fixed;
+  for (std::size_t c = 0; c < dim; ++c) {
+    squares += bars[c] * bars[c];
+    if (bars[c] == 0 && force.value[c] != 0) fixed += std::string(fixed.empty() ? "" : ", ") + "XYZ"[c];
+  }
+  if (std::all_of(bars.begin(), bars.begin() + dim, [&](const double bar) { return bar == force.error_bar; })) return;
+  force.error_bars.assign(bars.begin(), bars.begin() + dim);
+  force.error_bar = std::min(force.error_bar, std::sqrt(squares));
+  if (!fixed.empty()) force.more += ", along " + fixed + " fixed by the load";
+}
+
 /// Gives results that have an error bar theirs, and the others of those that may have one their reasons.
 void add_error_bars(std::vector<Result> &all, const adapt::ObservedErrors &errors, const ResultScope &scope,
                     const bool told)
@@ -304,6 +321,8 @@ std::vector<Result> result_list(const Scene &scene, const Solution &s)
   add_place(all, scene, s);
   add_bars_of_entries(all, scene, s, errors);
   add_error_bars(all, errors, scope, s.adaptation && std::isfinite(s.adaptation->errors.energy));
+  for (Result &result : all)
+    if (result.key == "contact_force") add_bars_of_components(result, adapt::contact_force_bars(scene, s));
   add_bounded_energy(all, scene, s);
   double largest = 0;
   for (const auto &side : s.contact.sides) largest = std::max(largest, length(side.force));

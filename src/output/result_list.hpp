@@ -22,8 +22,9 @@ struct Result {
   bool is_vector = false;
   std::string unit; ///< may be empty
   double error_bar = std::numeric_limits<double>::quiet_NaN();
-  std::string no_bar;     ///< why there is no error bar, if there is none
-  bool tells_why = false; ///< it has a reason of its own, which its line tells
+  std::vector<double> error_bars{}; ///< of a vector's components, where they differ; else empty
+  std::string no_bar;               ///< why there is no error bar, if there is none
+  bool tells_why = false;           ///< it has a reason of its own, which its line tells
   // Of the largest pressure:
   std::vector<double> place; ///< where it is [length]; else empty
   GO num_places = 0;         ///< nodes that have it; the place is that of the first

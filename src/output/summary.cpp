@@ -82,6 +82,7 @@ nlohmann::ordered_json results_json(const std::vector<Result> &results)
     entry["value"] = result.is_vector ? nlohmann::ordered_json(result.value) : nlohmann::ordered_json(result.value[0]);
     entry["unit"] = result.unit.empty() ? "1" : result.unit;
     entry["error_bar"] = maybe(result.error_bar);
+    if (!result.error_bars.empty()) entry["error_bars"] = result.error_bars;
     if (std::isnan(result.error_bar)) entry["reason"] = result.no_bar;
     if (!result.place.empty()) {
       entry["place"] = result.place;

@@ -104,6 +104,15 @@ class ForceErrors(WrittenDeckTestCase):
                 self.assertAlmostEqual(*bars, delta=1e-4 * bars[0])
                 self.assertIsNone(found["results"]["obstacle_displacement"]["error_bar"])  # one mesh shows no change
 
+    def test_a_tool_off_its_axis_has_a_bar_for_each_component_of_its_force(self):
+        coarse, fine = (self.solve("tool", written(TOOL, ADAPT=f"Target Relative Error: {target}", CENTRE="[0.6, 4.0], Force Y: -25.0"))["results"]["contact_force"]
+                        for target in ("0.1", "0.02"))
+        self.assertEqual(coarse["error_bars"][1], 0)
+        self.assertAlmostEqual(coarse["value"][1], -25, delta=1e-6)
+        self.assertLessEqual(abs(coarse["value"][0] - fine["value"][0]), coarse["error_bars"][0] + fine["error_bars"][0])
+        self.assertEqual(coarse["error_bar"], coarse["error_bars"][0])
+        self.assertGreater(coarse["error_bar"], 0)
+
     def test_a_tilt_has_a_bar_and_forces_that_are_given_are_exact(self):
         coarse, fine = (self.solve("tilt", written(PUNCH, TOP="X: 0.0, Point: [1.1, 1.0], Force Y: -22.0", TARGET=target)) for target in ("0.05", "0.005"))
         for key in ("force_displacement", "rigid_rotation"):

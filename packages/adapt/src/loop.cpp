@@ -415,6 +415,14 @@ ObservedErrors errors_of(const Task &task, const Solution &s)
   return errors;
 }
 
+std::vector<double> contact_force_bars(const Task &task, const Solution &s)
+{
+  if (!s.adaptation || !s.has_results()) return {};
+  const auto &all = s.adaptation->cycles;
+  return contact_force_bars({all.begin(), all.begin() + best_of(all) + 1}, errors_of(task, s),
+                            fixed_by_load(task.model), task.step.uzawa.tolerance);
+}
+
 double exact_error(const Task &task, const Solution &s)
 {
   return std::sqrt(2 * std::abs(s.energy - task.adapt.exact_energy) / s.energy_norm_squared);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "motions.hpp"
 
+#include "rpc/adapt/observed_error.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -56,9 +58,46 @@ FixedByLoad fixed_by_load(const analysis::Model &model)
     if (condition.rigid) fixed.moments.push_back(is_left_to_forces(condition, 3));
   }
   for (const auto &side : model.contact)
-    for (int c = 0; c < 3; ++c)
+    for (int c = 0; c < 3; ++c) {
       if (side.obstacle.force[c]) fixed.contact[c] = side.obstacle.stiffness[c] == 0;
+      fixed.springs[c] += side.obstacle.stiffness[c];
+    }
   return fixed;
+}
+
+namespace
+{
+
+/// Error of a component of the contact force on the last mesh, as all meshes show it.                                (10.7)
+double shown_of_component(const std::vector<Cycle> &cycles, const int c)
+{
+  std::vector<double> eta, change, to_last;
+  for (std::size_t k = 0; k < cycles.size(); ++k) {
+    const double here = cycles[k].contact.force[c];
+    eta.push_back(cycles[k].estimate);
+    if (k > 0) change.push_back(std::abs(here - cycles[k - 1].contact.force[c]));
+    if (k + 1 < cycles.size()) to_last.push_back(std::abs(here - cycles.back().contact.force[c]));
+  }
+  const double error = std::max(observed_error(change, eta), error_over_span(to_last, eta));
+  return unsettled(change, eta, 0) ? std::max(error, change.back()) : error;
+}
+
+} // namespace
+
+std::vector<double> contact_force_bars(const std::vector<Cycle> &cycles, const ObservedErrors &errors,
+                                       const FixedByLoad &fixed, const double tolerance)
+{
+  if (cycles.size() < 2 || std::isnan(errors.contact_force)) return {};
+  const double rounding = tolerance * length(cycles.back().contact.force);
+  std::vector<double> bars(3, errors.contact_force);
+  for (int c = 0; c < 3; ++c)
+    if (fixed.contact[c]) {
+      const double shown = shown_of_component(cycles, c);
+      bars[c] = std::min(bars[c], shown > rounding ? shown : 0);
+    } else if (fixed.springs[c] > 0) {
+      bars[c] = std::min(bars[c], fixed.springs[c] * errors.motions.obstacle);
+    }
+  return bars;
 }
 
 } // namespace rpc::adapt

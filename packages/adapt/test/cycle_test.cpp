@@ -99,6 +99,32 @@ TEST(ErrorBars, OfAContactForceThatTheLoadFixesAreWhatItChanges)
   EXPECT_EQ(observed_errors(open, free, tolerance).contact_force, 0);
 }
 
+TEST(ErrorBars, OfAComponentOfTheContactForceIsWhatTheLoadOrASpringLeaves)
+{
+  std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10 + 1e-9, 30)};
+  cycles[0].contact.force[0] = 1.2;
+  cycles[1].contact.force[0] = 1;
+  constexpr double tolerance = 1e-8, spring = 3;
+  const adapt::FixedByLoad pressed = {{false, true, false}};
+  auto errors = observed_errors(cycles, pressed, tolerance);
+  using Bars = std::vector<double>;
+  EXPECT_EQ(adapt::contact_force_bars(cycles, errors, pressed, tolerance),
+            (Bars{errors.contact_force, 0, errors.contact_force}));
+  cycles[0].contact.force[1] = 10.1; // the load on a curved side
+  EXPECT_NEAR(adapt::contact_force_bars(cycles, errors, pressed, tolerance)[1],
+              std::min(0.1 / (0.1 / 0.02 - 1), errors.contact_force), 1e-9);
+  adapt::FixedByLoad on_spring = {{false, false, false}};
+  on_spring.springs = {0, spring, 0};
+  errors.motions.obstacle = 1e-3;
+  EXPECT_EQ(adapt::contact_force_bars(cycles, errors, on_spring, tolerance),
+            (Bars{errors.contact_force, spring * 1e-3, errors.contact_force}));
+  errors.motions.obstacle = 1; // no more than that of the vector
+  EXPECT_EQ(adapt::contact_force_bars(cycles, errors, on_spring, tolerance)[1], errors.contact_force);
+  EXPECT_TRUE(adapt::contact_force_bars({cycles[1]}, errors, on_spring, tolerance).empty());
+  errors.contact_force = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(adapt::contact_force_bars(cycles, errors, on_spring, tolerance).empty());
+}
+
 TEST(ErrorBars, OfReactionsAreThoseOfForces)
 {
   std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10, 30)};

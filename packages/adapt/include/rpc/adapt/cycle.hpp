@@ -117,8 +117,15 @@ struct FixedByLoad {
       contact{}; ///< components without a prescribed displacement, or along which a force moves the obstacle
   std::vector<bool> reactions = {}; ///< of each Dirichlet condition: all components; empty: none
   std::vector<bool> moments = {};   ///< of each rigid side
+  Point springs{};                  ///< stiffness of those that the obstacle lies on, along each coordinate [N/m]
 };
 FixedByLoad fixed_by_load(const analysis::Model &model);
+
+/// Error bars of the components of the contact force, of several meshes: of those that the load fixes what the meshes show, along a spring its
+/// stiffness times that of the obstacle's way, and no more than that of the vector. Empty where this is not known.      doc/theory.md (10.7f)
+/// @param errors  of the last mesh   @param tolerance  as below
+std::vector<double> contact_force_bars(const std::vector<Cycle> &cycles, const ObservedErrors &errors,
+                                       const FixedByLoad &fixed, double tolerance);
 
 /// Error bars of the last of several meshes.
 /// @param fixed      a contact force that has no other components has but the error that the meshes show

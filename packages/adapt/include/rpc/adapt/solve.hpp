@@ -61,6 +61,8 @@ double relative_estimate(const Solution &solution);
 /// Errors of the results: as the sequence of meshes shows them, or of one mesh with an estimate that of J alone. Without an estimate all
 /// are NaN. `unknown` tells why.
 ObservedErrors errors_of(const Task &task, const Solution &solution);
+/// Those of the components of its contact force, see contact_force_bars(); empty where they are not known.
+std::vector<double> contact_force_bars(const Task &task, const Solution &solution);
 /// The true relative error, sqrt(2 |J_h - J| / a(u_h, u_h)), where the deck has the exact J; else NaN.
 double exact_error(const Task &task, const Solution &solution);
 
