@@ -8,6 +8,7 @@ import sys
 import tempfile
 import types
 import unittest
+import unittest.mock
 
 try:
     import allpairspy  # noqa: F401
@@ -378,6 +379,19 @@ class Judgement(unittest.TestCase):
         known.lists = [{"seed": 1, "rows": 2, "fail": [0, 1]}]
         options = types.SimpleNamespace(seed=1, rows=2, only=None)
         self.assertEqual(suite.stale(options, [outcome(0, "a bar of force"), outcome(1)], known), [1])
+
+    def test_no_rank_outlives_a_run_that_waits_for_ever(self):
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.object(rows, "GIVEN_UP", 1):
+            waits = pathlib.Path(folder) / "waits"
+            waits.write_text("#!/bin/bash\nset -m\nsleep 60 &\necho $! > rank\nwait\n")  # the rank has a process group of its own
+            waits.chmod(0o755)
+            program = rows.Program(types.SimpleNamespace(program=str(waits), openmp=None, mpiexec="", preload=None))
+            run = program.run(pathlib.Path(folder))
+            self.assertIsNone(run.code)
+            self.assertIn("still running", run.stderr)
+            rank = int((pathlib.Path(folder) / "rank").read_text())
+            status = pathlib.Path(f"/proc/{rank}/status")
+            self.assertFalse(status.exists() and "State:\tZ" not in status.read_text())
 
     def test_files_of_relative_paths_are_found_from_the_folders_of_rows(self):
         options = suite.arguments(["--program=build/rpc", "--openmp=other/rpc", "--preload=build/a.so:b.so"])

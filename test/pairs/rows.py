@@ -37,6 +37,16 @@ class Outcome:
     complaints: list = dataclasses.field(default_factory=list)
 
 
+def end_session(leader):
+    """Kills all processes of a session: mpiexec gives each rank a process group of its own, and ranks that wait for each other outlive it."""
+    for entry in pathlib.Path("/proc").iterdir():
+        try:
+            if entry.name.isdigit() and os.getsid(int(entry.name)) == leader:
+                os.kill(int(entry.name), signal.SIGKILL)
+        except (ProcessLookupError, PermissionError):
+            pass  # it has ended, or is not ours
+
+
 class Program:
     """@param options  program, openmp, one_rank, mpiexec, preload"""
 
@@ -63,7 +73,7 @@ class Program:
                     stdout, stderr = process.communicate(timeout=GIVEN_UP)
                     code = process.returncode
                 except subprocess.TimeoutExpired:
-                    os.killpg(process.pid, signal.SIGKILL)  # with the ranks that mpiexec has started
+                    end_session(process.pid)
                     code, stdout, stderr = None, "", f"rpc: still running after {GIVEN_UP} s"
         if code in OUT_OF_TIME:
             code, stderr = None, f"rpc: still running after {TIME_LIMIT} s of processor time"
