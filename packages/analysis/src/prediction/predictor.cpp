@@ -18,14 +18,15 @@ namespace rpc::analysis
 namespace
 {
 
-/// Why no coarser mesh is to predict a step on this one; empty if one is. With friction a solution takes more steps than without, and a
-/// prediction saves most of them on the smallest mesh, too.
-std::string no_prediction(const fem::Discretization &d, const contact::ContactNodes &contact, const bool enabled)
+/// Why no coarser mesh is to predict a step on this one; empty if one is. With friction a solution takes more steps than without, and so does a
+/// search for an obstacle that a force moves; a prediction saves most of them on the smallest mesh, too.
+std::string no_prediction(const Problem &fine, const contact::ContactNodes &contact, const bool enabled)
 {
   if (contact.num_total == contact.num_fixed) return "no node can touch";
   if (!enabled) return "switched off";
-  if (!contact.friction.anywhere && d.mesh->owned_nodes->getGlobalNumElements() <
-                                        static_cast<Tpetra::global_size_t>(step_rules.least_nodes_predicted))
+  const bool takes_more = contact.friction.anywhere || pressed_by_force(fine.model()) != nullptr;
+  if (!takes_more && fine.discretization().mesh->owned_nodes->getGlobalNumElements() <
+                         static_cast<Tpetra::global_size_t>(step_rules.least_nodes_predicted))
     return "the mesh is small";
   return "";
 }
@@ -76,7 +77,7 @@ std::shared_ptr<const Problem> Predictor::made_coarser() const
 Prediction Predictor::predict(const Problem &fine, const Step &step, const Memory *const last)
 {
   Prediction prediction;
-  prediction.reason = no_prediction(fine.discretization(), step.contact, rough_.prediction.enabled);
+  prediction.reason = no_prediction(fine, step.contact, rough_.prediction.enabled);
   if (!prediction.reason.empty()) return prediction;
   try {
     if (!coarser_) {
