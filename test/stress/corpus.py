@@ -270,7 +270,7 @@ def scenes(source):
     solid = replaced((source / "input/block.xml").read_text(), (r"\{12, 12, 6\}", "{2, 3, 2}"))
     ball, revolved = ((source / f"input/{name}.xml").read_text() for name in ("ball", "ball_axisymmetric"))
     mesh_decks = {"sector": SECTOR, "octant": replaced(SOLID, ("HELD", "flat"), ("CONTACT", "sphere")),
-                  "bricks": replaced(SOLID, ("HELD", "held"), ("CONTACT", "contact"))}
+                  "bricks": replaced(SOLID, ("HELD", "held"), ("CONTACT", "contact")), "mixed": replaced(SOLID, ("HELD", "top"), ("CONTACT", "bottom"))}
     texts = {
         "beam.xml": [beam],
         "triangles.xml": [replaced(beam, ("Q1", "P2"))],
@@ -297,7 +297,7 @@ def scenes(source):
         texts[f"curved_{element}.xml"] = [CURVED.replace("MESH", name), (name, body.msh(1.0))]
     for mesh, deck, more in (("square_41.msh", SQUARE, ""), ("square_partitioned_41.msh", SQUARE, ""), ("square.unv", SQUARE, ""),
                              ("square.inp", SQUARE, ""), ("square.vtu", SQUARE, PLANES), ("two_squares.exo", SQUARES, ""),
-                             ("two_squares_4.exo", SQUARES, ""), ("brick_20.exo", BRICK, "")):
+                             ("two_squares_4.exo", SQUARES, ""), ("brick_20.exo", BRICK, ""), ("mixed.exo", BRICK, ""), ("mixed.inp", BRICK, "")):
         texts[f"{mesh.replace('.', '_')}.yaml"] = [deck.replace("MESH", mesh).replace("MORE", more), data / mesh]
     for mesh, deck, more in (("square.med", SQUARE, ""), ("square.vtk", SQUARE, PLANES)):
         texts[f"{mesh.replace('.', '_')}.yaml"] = [deck.replace("MESH", mesh).replace("MORE", more), data / mesh]
