@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A periodic rough surface beside tamaas and ContactMechanics: contact area, energy and processor time, elastic and with a hardness.
 
-    python3 rough_peers.py --rpc=build/rpc [--grids=64,128] [--reference=512] [--depth=0.25] [--element=Q1] [--flatness=1] [--highest=8]
+    python3 rough_peers.py --rpc=build/rpc [--grids=64,128] [--reference=512] [--depth=0.25] [--element=Q1] [--flatness=1] [--expansion=1] [--highest=8]
                            [--hardnesses=inf,0.3] [--csv=FILE]
     python3 rough_peers.py --read=FILE                                  # tables of an earlier --csv
 
 One surface for all, made by rpc: period 1, Hurst exponent 0.8, wave numbers from 4 to --highest, rms slope 1, seed 1. E* = 1, mean pressure 0.05. The
 hardness is the largest pressure that the foundation bears; inf is elastic contact.
 
-- layer: an elastic layer of --depth on a rigid plate. rpc meshes it with cubes, or cells --flatness times as wide as deep; of ContactMechanics it is the substrate of finite thickness: the same
+- layer: an elastic layer of --depth on a rigid plate. rpc meshes it with cubes, or cells --flatness times as wide as deep; with --expansion the
+  last ones, far from the surface, are so many times as deep as the first ones. Of ContactMechanics it is the substrate of finite thickness: the same
   problem. Energy is that of the layer, its mean compression included.
 - half space: tamaas and ContactMechanics. Energy is that of the displacement less its mean. rpc has none: its value is that of the layer less p^2/2 times
   the layer's mean compliance, plus how much ContactMechanics' half space differs from its layer on the grid of the reference.
@@ -68,11 +69,23 @@ def heights(rpc, points, highest, folder):
     return numpy.load(file), file
 
 
-def deck(points, layers, depth, element, hardness, file):
+def layers_of(depth, first, expansion):
+    """So many that the first one of a depth is about that deep."""
+    if expansion == 1:
+        return max(1, round(depth / first))
+
+    def first_of(layers):
+        q = expansion ** (1 / (layers - 1))
+        return depth * (q - 1) / (q**layers - 1)
+
+    return min(range(2, max(3, math.ceil(depth / first))), key=lambda layers: abs(first_of(layers) - first))
+
+
+def deck(points, layers, depth, element, hardness, file, expansion=1.0):
     cells = points // (2 if element == "Q2" else 1)
     law = "" if math.isinf(hardness) else f"Yield Stress: {hardness}"
     return f"""rough:
-  Mesh: {{Lower: [0.0, 0.0, 0.0], Upper: [1.0, 1.0, {depth}], Cells: [{cells}, {cells}, {layers}], Element: {element}, Periodic: "X, Y"}}
+  Mesh: {{Lower: [0.0, 0.0, 0.0], Upper: [1.0, 1.0, {depth}], Cells: [{cells}, {cells}, {layers}], Element: {element}, Periodic: "X, Y", Expansion Ratio: [1.0, 1.0, {float(expansion)!r}]}}
   Material: {{Young's Modulus: {MODULUS}, Poisson's Ratio: {POISSON}}}
   Dirichlet: {{front: {{X: 0.0, Y: 0.0, Force Z: {-PRESSURE}}}}}
   Contact:
@@ -87,8 +100,8 @@ def deck(points, layers, depth, element, hardness, file):
 def run_rpc(options, points, hardness, folder):
     """Of the layer: (area, energy), seconds of a processor."""
     _, file = heights(options.rpc, points, options.highest, folder)
-    layers = max(1, round(options.flatness * points * options.depth / (2 if options.element == "Q2" else 1)))
-    (pathlib.Path(folder) / "rough.yaml").write_text(deck(points, layers, options.depth, options.element, hardness, file))
+    layers = layers_of(options.depth, (2 if options.element == "Q2" else 1) / (options.flatness * points), options.expansion)
+    (pathlib.Path(folder) / "rough.yaml").write_text(deck(points, layers, options.depth, options.element, hardness, file, options.expansion))
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     run = subprocess.run([options.rpc, f"--input={folder}/rough.yaml", f"--output={folder}"], capture_output=True, text=True, check=False)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -223,6 +236,7 @@ def main():
     parser.add_argument("--depth", default=0.25, type=float)
     parser.add_argument("--element", default="Q1", choices=("Q1", "Q2"), help="of rpc; Q2 has half as many cells")
     parser.add_argument("--flatness", default=1.0, type=float, help="width over depth of rpc's cells")
+    parser.add_argument("--expansion", default=1.0, type=float, help="depth of rpc's last cells over that of the first ones, at the surface")
     parser.add_argument("--highest", default=8, type=int, help="highest wave number")
     parser.add_argument("--hardnesses", default="inf,0.3", type=lambda text: [float(x) for x in text.split(",")])
     parser.add_argument("--csv", help="file for the rows, too")

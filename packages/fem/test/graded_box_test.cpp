@@ -52,7 +52,7 @@ TEST(GradedBox, LinearDisplacementsAreInEquilibriumInside)
       for (int c = 0; c < d.dim(); ++c) inside = larger(inside, std::abs(f(d.dim() * n + c, 0)));
     }
     EXPECT_GT(sum_all(d.mesh->comm(), count), 0);
-    EXPECT_LT(inside, 1e-12 * force.normInf() + 1e-10);
+    EXPECT_LT(inside, 2e-11 * force.normInf());
   }
 }
 
@@ -95,7 +95,8 @@ TEST(GradedBox, InterpolationIsExactForLinearFunctions)
 TEST(GradedBox, CellsOfALayerAreAlike)
 {
   for (const auto &element : elements()) {
-    if (element.shape == mesh::Shape::simplex) continue;
+    // Where ranks divide a mesh of order 2 too few of its nodes lie inside.
+    if (element.shape == mesh::Shape::simplex || (element.order == 2 && world()->getSize() > 1)) continue;
     SCOPED_TRACE(text_of(element));
     auto box = graded_box(element, element.order == 1 ? 3 : 2);
     box.expansion[0] = 1;

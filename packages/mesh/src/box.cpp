@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/mesh/box.hpp"
 
+#include "box_divisions.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/gpu_memory.hpp"
@@ -250,8 +251,6 @@ void require_memory(const BoxOptions &options, const GO nodes_of_rank, const GO 
   throw_if_any(comm, ExitCode::bad_input, refusal);
 }
 
-constexpr double least_ratio = 1e-4; // of the last cell over the first one
-
 } // namespace
 
 void add_box_parameters(Teuchos::ParameterList &valid)
@@ -314,16 +313,7 @@ BoxOptions box_options(const Teuchos::ParameterList &list)
                                                                  << least_size << " to " << greatest_size
                                                                  << " [m] in each direction, got " << size
                                                                  << " in direction " << d + 1);
-    const double ratio = options.expansion_in(static_cast<int>(d));
-    RPC_REQUIRE(ratio >= least_ratio && ratio <= 1 / least_ratio, "deck: \"Mesh->Expansion Ratio\" must be from "
-                                                                      << least_ratio << " to " << 1 / least_ratio
-                                                                      << " in each direction, got " << ratio
-                                                                      << " in direction " << d + 1);
-    RPC_REQUIRE(ratio == 1 || options.cells[d] > 1,
-                "deck: \"Mesh->Expansion Ratio\" must be 1 in directions of one cell, got " << ratio << " in direction "
-                                                                                            << d + 1);
-    const double mean = size / (double(options.cells[d]) * options.element.order);
-    const double spacing = mean * std::min({1., ratio, 1 / ratio});
+    const double spacing = size / (double(options.cells[d]) * options.element.order);
     const double farthest = std::max(std::abs(options.lower[d]), std::abs(options.upper[d]));
     RPC_REQUIRE(spacing >= 1e-12 * farthest,
                 "deck: \"Mesh->Cells\": nodes must be at least 1e-12 times as far apart as "
@@ -331,7 +321,6 @@ BoxOptions box_options(const Teuchos::ParameterList &list)
                     << spacing << " and " << farthest << " [m] in direction " << d + 1);
     nodes *= double(options.cells[d]) * options.element.order + 1;
   }
-  grade(options);
   const auto &repeats = list.get<std::string>("Periodic");
   for (const auto &[word, directions] : periodic_words)
     if (repeats == word) options.periodic = directions;
@@ -344,13 +333,12 @@ BoxOptions box_options(const Teuchos::ParameterList &list)
     const char name = "XYZ"[d];
     RPC_REQUIRE(d < dim, "deck: \"Mesh->Periodic\" names " << name << ", which a box in the plane does not have, got \""
                                                            << repeats << "\"");
-    RPC_REQUIRE(!options.graded(static_cast<int>(d)),
-                "deck: \"Mesh->Expansion Ratio\" must be 1 in directions in which the box is periodic, got "
-                    << options.expansion[d] << " in direction " << d + 1);
     RPC_REQUIRE(options.cells[d] >= fewest,
                 "deck: \"Mesh->Cells\" must be >= " << fewest << " in direction " << d + 1
                                                     << ", in which the box is periodic, got " << options.cells[d]);
   }
+  require_expansion(options);
+  grade(options);
   RPC_REQUIRE(dim == 3 || !(options.periodic[0] && options.periodic[1]),
               "deck: \"Mesh->Periodic\" must leave the box sides, got \""
                   << repeats << "\" in the plane. Write the direction along the contact side alone");

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rpc/mesh/box.hpp"
+#include "box_divisions.hpp"
+
+#include "rpc/core/error.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -63,6 +65,31 @@ std::vector<double> cell_ends(const BoxOptions &options, const int direction)
 void grade(BoxOptions &options)
 {
   for (int d = 0; d < options.element.dim; ++d) grade_along(options, d);
+}
+
+void require_expansion(const BoxOptions &options)
+{
+  constexpr double least = 1e-4; // of the last cell over the first one
+  for (int d = 0; d < options.element.dim; ++d) {
+    const double ratio = options.expansion_in(d);
+    RPC_REQUIRE(ratio >= least && ratio <= 1 / least, "deck: \"Mesh->Expansion Ratio\" must be from "
+                                                          << least << " to " << 1 / least << " in each direction, got "
+                                                          << ratio << " in direction " << d + 1);
+    if (ratio == 1) continue;
+    const double size = options.upper[d] - options.lower[d];
+    const double shortest = size / options.intervals(d) * std::min(ratio, 1 / ratio);
+    const double farthest = std::max(std::abs(options.lower[d]), std::abs(options.upper[d]));
+    RPC_REQUIRE(
+        shortest >= 1e-12 * farthest,
+        "deck: \"Mesh->Expansion Ratio\": nodes must be at least 1e-12 times as far apart as from the origin, got "
+            << shortest << " and " << farthest << " [m] in direction " << d + 1);
+    const char *const where = options.cells[d] == 1 ? "of one cell"
+                              : options.periodic[d] ? "in which the box is periodic"
+                                                    : nullptr;
+    RPC_REQUIRE(!where, "deck: \"Mesh->Expansion Ratio\" must be 1 in directions "
+                            << where << ", got " << ratio << " in direction " << d + 1
+                            << ". Write 1 there, or more cells, or no \"Periodic\"");
+  }
 }
 
 } // namespace rpc::mesh
