@@ -168,7 +168,7 @@ TEST(ErrorBoundInSpace, IsRefusedWithWhatIsCovered)
     }
   };
   refused({"Mesh->Element=P2"}, "the cells are P2");
-  refused({"Mesh->Element=Q1"}, "the cells are Q1");
+  refused({"Mesh->Element=Q2"}, "the cells are Q2");
   refused({"Contact->Gap=0.01*x^2"}, "another than between its nodes");
   refused({"Contact->Yield Stress=5 + x"}, "depends on the place");
   refused({"Dirichlet->left->X=0.001*y^2"}, "displacements that the elements represent");

@@ -58,7 +58,8 @@ TEST(ErrorBoundOnRanks, OfABodyInSpaceIsThatOfOneRank)
       {"Contact->Yield Stress=6", "Traction->front->Z=-6*sin(1 + 0.2*x*y)", "Body Force->X=2"},
       {"Contact->Yield Stress=inf", "Mesh->Cells={3, 2, 2}"},
       {"Contact->Yield Stress=2", "Contact->Hardening=300", "Contact->Stiffness=3e3", "Contact->Friction Bound=0.3"},
-      {"Contact->Yield Stress=inf", "Adapt->Meshes=nested", "Adapt->Target Relative Error=0.55"}};
+      {"Contact->Yield Stress=inf", "Adapt->Meshes=nested", "Adapt->Target Relative Error=0.55"},
+      {"Contact->Yield Stress=6", "Body Force->X=2", "Mesh->Cells={5, 3, 3}", "Mesh->Element=Q1"}};
   for (const auto &scene : scenes) {
     SCOPED_TRACE(scene.back());
     auto deck = scene;
@@ -73,7 +74,7 @@ TEST(ErrorBoundOnRanks, OfABodyInSpaceIsThatOfOneRank)
     const double size = std::abs(b.upper) + std::abs(b.lower);
     EXPECT_NEAR(a.lower, b.lower, 1e-10 * size);
     EXPECT_NEAR(a.upper, b.upper, 1e-10 * size);
-    ASSERT_EQ(a.steps.size(), 7u);
+    ASSERT_EQ(a.steps.size(), b.steps.size());
     for (std::size_t k = 0; k < b.steps.size(); ++k) EXPECT_NEAR(a.steps[k], b.steps[k], 1e-8 * size) << k;
     EXPECT_NEAR(a.moved, b.moved, 1e-10 * b.energy_norm);
     double sum = 0;

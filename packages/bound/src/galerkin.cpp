@@ -2,6 +2,7 @@
 #include "galerkin.hpp"
 
 #include "boundary.hpp"
+#include "hexahedra.hpp"
 #include "rpc/fem/rounding.hpp"
 
 #include <algorithm>
@@ -30,6 +31,19 @@ LO outer_facets(const SpaceInput &in)
 {
   return in.facets.num_outer;
 }
+/// The cells of the input at the nodes.
+const fem::NodeToCells &around_of(const CellInput &, const fem::Discretization &d)
+{
+  return d.node_to_cells;
+}
+const fem::NodeToCells &around_of(const SpaceInput &, const fem::Discretization &d)
+{
+  return d.node_to_cells;
+}
+const fem::NodeToCells &around_of(const HexahedraInput &in, const fem::Discretization &)
+{
+  return in.around;
+}
 int nodes_of_facets(const CellInput &)
 {
   return 3;
@@ -48,7 +62,7 @@ RCP<Vector> out_of_balance(const Input &in, const fem::Discretization &d, const 
   const RCP<Vector> r = rcp(new Vector(d.owned_dofs));
   const auto to = device_write(*r);
   const int nodes = static_cast<int>(in.cells.extent(1)), of_facet = nodes_of_facets(in);
-  const auto around = d.node_to_cells;
+  const fem::NodeToCells around = around_of(in, d);
   const auto facets = in.facets;
   const LO owned = d.mesh->num_owned_nodes();
   Kokkos::parallel_for(
@@ -158,6 +172,9 @@ template Solved galerkin_solution(const analysis::Problem &, const analysis::Ste
                                   const solver::LinearSolverOptions &, const CellInput &, const BoundaryTractions &);
 template Solved galerkin_solution(const analysis::Problem &, const analysis::StepSolution &,
                                   const solver::LinearSolverOptions &, const SpaceInput &, const BoundaryTractions &);
+template Solved galerkin_solution(const analysis::Problem &, const analysis::StepSolution &,
+                                  const solver::LinearSolverOptions &, const HexahedraInput &,
+                                  const BoundaryTractions &);
 template double work_of(const fem::Discretization &, const DeviceView<double ***> &, const CellInput &, const Vector &);
 template double work_of(const fem::Discretization &, const DeviceView<double ***> &, const SpaceInput &,
                         const Vector &);

@@ -3,6 +3,7 @@
 
 #include "bound_parts.hpp"
 #include "descent.hpp"
+#include "hexahedra_bound.hpp"
 #include "ring_solves.hpp"
 #include "space_boundary.hpp"
 #include "space_contact_terms.hpp"
@@ -12,13 +13,9 @@
 
 namespace rpc::bound
 {
-namespace
-{
 
-/// What the boundary is judged by: the stresses are not needed.
-SpaceInput space_input(const analysis::Problem &problem, const analysis::Model &model)
+SpaceInput space_input(const fem::Discretization &d, const analysis::Model &model)
 {
-  const fem::Discretization &d = problem.discretization();
   SpaceInput in;
   in.coords = d.mesh->coords;
   in.block = d.mesh->block;
@@ -34,17 +31,15 @@ SpaceInput space_input(const analysis::Problem &problem, const analysis::Model &
   return in;
 }
 
-} // namespace
-
 std::string not_covered_in_space(const analysis::Problem &problem, const analysis::Step &step)
 {
   const fem::Discretization &d = problem.discretization();
   const analysis::Model model = problem.model().seen_at(step.time);
-  if (d.mesh->element.shape != mesh::Shape::simplex || d.mesh->element.order != 1)
-    return "in space it covers tetrahedra of order 1, and the cells are " + d.mesh->element.name() +
-           "; \"Mesh->Element\" = P1 is covered";
-  boundary_of(problem, step, space_input(problem, model),
-              {HostView<double *>("rpc::bound::none", step.contact.size()), {}});
+  if (d.mesh->element.order != 1)
+    return "in space it covers elements of order 1, and the cells are " + d.mesh->element.name() +
+           "; \"Mesh->Element\" = P1 or Q1 is covered";
+  if (d.mesh->element.shape != mesh::Shape::simplex) return not_covered_of_hexahedra(problem, step);
+  boundary_of(d, model, step, space_input(d, model), {HostView<double *>("rpc::bound::none", step.contact.size()), {}});
   return "";
 }
 
@@ -52,12 +47,13 @@ EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::Ste
                            const solver::LinearSolverOptions &options, const int steps)
 {
   const fem::Discretization &d = problem.discretization();
+  if (d.mesh->element.shape != mesh::Shape::simplex) return bound_of_hexahedra(problem, s, options, 2 * steps);
   const Comm &comm = d.mesh->comm();
   const analysis::Model model = problem.model().seen_at(s.step.time);
-  SpaceInput in = space_input(problem, model);
+  SpaceInput in = space_input(d, model);
   in.reference = reference_stress(d.mesh->element);
   find_kinds(in, d.mesh->comm());
-  const SpaceBoundary boundary = boundary_of(problem, s.step, in, tractions_of(s.contact));
+  const SpaceBoundary boundary = boundary_of(d, model, s.step, in, tractions_of(s.contact));
 
   EnergyBound bound;
   const HostView<double *> moved = moved_out(problem, model, s, boundary.sides, bound);

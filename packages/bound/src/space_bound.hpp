@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rpc/bound/bound.hpp"
+#include "space_stress.hpp"
 
 /// What bound.hpp says, of bodies in space.
 namespace rpc::bound
@@ -10,6 +11,9 @@ namespace rpc::bound
 /// Why the bound of a body in space is not known; empty if it is. What does not depend on the dimension is not looked at.
 /// @throws rpc::Error (bad_input) where boundary conditions are not covered
 std::string not_covered_in_space(const analysis::Problem &problem, const analysis::Step &step);
+
+/// What the boundary is judged by: the stresses are not needed. Collective.
+SpaceInput space_input(const fem::Discretization &d, const analysis::Model &model);
 
 EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::StepSolution &s,
                            const solver::LinearSolverOptions &options, int steps);

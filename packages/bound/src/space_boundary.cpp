@@ -41,7 +41,7 @@ std::vector<std::vector<double>> values_of(const FacetPolynomials &polynomials, 
 
 /// Whether a prescribed displacement between the nodes is what the elements make of it there.
 void require_linear_displacement(const ScalarField &field, const SpaceFacetsOnHost &host, const std::vector<LO> &facets,
-                                 const std::string &name)
+                                 const bool hexahedra, const std::string &name)
 {
   if (field.is_constant()) return;
   FacetRule rule = facet_rule(3, 4);
@@ -63,20 +63,23 @@ void require_linear_displacement(const ScalarField &field, const SpaceFacetsOnHo
       }
     }
   const WorstInSpace worst = worst_in_space(host.mesh.comm(), off_most, largest, where);
-  RPC_REQUIRE(worst.off <= 1e-10, covers << "displacements that the elements represent; \"Dirichlet->" << name
-                                         << "\" is not, at " << place_in_space(worst.place) << ". Write \"estimated\"");
+  RPC_REQUIRE(worst.off <= 1e-10,
+              covers << (hexahedra ? "displacements of sides of hexahedra that are linear on each triangle that their "
+                                     "faces are split into; \"Dirichlet->"
+                                   : "displacements that the elements represent; \"Dirichlet->")
+                     << name << "\" is not, at " << place_in_space(worst.place) << ". Write \"estimated\"");
 }
 
 /// load(f, j, i) += the coefficients of the tractions on a side. What they lack of the tractions, such as half of a jump within a facet, no
 /// stress would balance, and J of the exact solution could lie below its bound: that is refused.
-void add_space_load(const analysis::Problem &problem, const SpaceFacetsOnHost &host, const fem::TractionLoad &load,
-                    const HostView<double ***> &sum)
+void add_space_load(const fem::Discretization &discretization, const SpaceFacetsOnHost &host,
+                    const fem::TractionLoad &load, const HostView<double ***> &sum)
 {
   constexpr int along = 5;         // points for the coefficients: exact for products of degree 8
   constexpr int parts = 3;         // of a facet along each side, where what is lacking is looked for
   constexpr double allowed = 1e-3; // of the largest traction of the entry: smooth loads stay below it on coarse cells
   const mesh::Side &side = host.mesh.side(load.side, "Traction->" + load.name);
-  const fem::VectorField traction = fem::force_per_area(problem.discretization(), side, load);
+  const fem::VectorField traction = fem::force_per_area(discretization, side, load);
   const std::vector<LO> facets = host.facets_of(side);
   const FacetPolynomials polynomials(3, ReferenceStress::degree_of_loads_in_space);
   const FacetRule rule = facet_rule(3, along), fine = refined(3, facet_rule(3, along - 1), parts);
@@ -113,12 +116,11 @@ void add_space_load(const analysis::Problem &problem, const SpaceFacetsOnHost &h
 
 } // namespace
 
-SpaceBoundary boundary_of(const analysis::Problem &problem, const analysis::Step &step, const SpaceInput &in,
-                          const PointTractions &solution)
+SpaceBoundary boundary_of(const fem::Discretization &d, const analysis::Model &model, const analysis::Step &step,
+                          const SpaceInput &in, const PointTractions &solution)
 {
-  const analysis::Model model = problem.model().seen_at(step.time);
   const SpaceFacets &facets = in.facets;
-  const SpaceFacetsOnHost host(*problem.discretization().mesh, facets);
+  const SpaceFacetsOnHost host(*d.mesh, facets);
   HostView<char *[3]> prescribed("rpc::bound::prescribed", facets.num_outer);
   for (const auto &condition : model.dirichlet) {
     const auto &sides = host.mesh.sides;
@@ -131,7 +133,7 @@ SpaceBoundary boundary_of(const analysis::Problem &problem, const analysis::Step
     const std::vector<LO> of_side = host.facets_of(*side);
     for (int i = 0; i < 3; ++i) {
       if (!condition.displacement[i]) continue;
-      require_linear_displacement(*condition.displacement[i], host, of_side, condition.name);
+      require_linear_displacement(*condition.displacement[i], host, of_side, in.of_hexahedra, condition.name);
       for (const LO f : of_side) prescribed(f, i) = 1;
     }
   }
@@ -145,7 +147,7 @@ SpaceBoundary boundary_of(const analysis::Problem &problem, const analysis::Step
     for (int i = 0; i < 3; ++i) known(f, i) = host.cell(f, 1) == SpaceFacets::none && !prescribed(f, i);
   Kokkos::deep_copy(b.tractions.known, known);
   HostView<double ***> load("rpc::bound::load", facets.num_outer, polynomials, 3);
-  for (const auto &traction : model.tractions) add_space_load(problem, host, traction, load);
+  for (const auto &traction : model.tractions) add_space_load(d, host, traction, load);
   const auto to = Kokkos::create_mirror_view(b.tractions.load);
   for (std::size_t f = 0; f < load.extent(0); ++f) {
     double largest = 0;
@@ -161,7 +163,7 @@ SpaceBoundary boundary_of(const analysis::Problem &problem, const analysis::Step
   b.beyond = max_all(host.mesh.comm(), b.beyond ? 1 : 0) > 0;
   Kokkos::deep_copy(b.tractions.load, to);
   for (int k = 0; k < step.contact.num_sides(); ++k)
-    b.sides.push_back(space_side(problem, model, step, host, k, solution, prescribed));
+    b.sides.push_back(space_side(d, model, step, host, k, solution, prescribed));
   return b;
 }
 

@@ -17,9 +17,11 @@ struct SpaceBoundary {
   bool beyond = false;             ///< whether loads have more than the degree of the stresses
 };
 
-/// Collective. @throws rpc::Error (bad_input) where the sides are not covered
-SpaceBoundary boundary_of(const analysis::Problem &problem, const analysis::Step &step, const SpaceInput &in,
-                          const PointTractions &solution);
+/// Collective.
+/// @param d  of the tetrahedra   @param model  seen at the time of the step
+/// @throws rpc::Error (bad_input) where the sides are not covered
+SpaceBoundary boundary_of(const fem::Discretization &d, const analysis::Model &model, const analysis::Step &step,
+                          const SpaceInput &in, const PointTractions &solution);
 
 /// The same tractions with those of contact. @param contact  (sides)
 BoundaryTractions with_contact(const SpaceInput &in, const SpaceBoundary &boundary,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "space_cells.hpp"
 
+#include "hexahedra.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
@@ -181,13 +183,29 @@ struct DerivativeOfCells {
   }
 };
 
-/// Energy and balance of the stress of a tetrahedron.
+/// The displacement of a tetrahedron's own shape functions.
 template <int K>
+struct TetrahedronField {
+  SpaceInput in;
+  ReadDisplacement u;
+  static constexpr bool is_linear = K == 1; ///< C eps is constant
+
+  /// du_i / dx_j at a point of a part.
+  KOKKOS_FUNCTION void gradient_at(const AffineTetrahedron &cell, const LO c, const int s, const int q,
+                                   double (&D)[3][3]) const
+  {
+    gradient_in_space(
+        in, cell, c, u, [&](const int a, const int l) { return in.reference.gradient(s, q, a, l); }, D);
+  }
+};
+
+/// Energy and balance of the stress of a tetrahedron.
+template <int K, class Field = TetrahedronField<K>>
 struct SpaceDifference {
   using Sizes = SpaceSizes<K>;
   SpaceInput in;
   SpaceForms forms;
-  ReadDisplacement u;
+  Field u;
   Tractions t;
   DeviceView<double *> of_cell;
 
@@ -258,9 +276,8 @@ struct SpaceDifference {
     for (int s = 0; s < 4; ++s)
       for (int q = 0; q < static_cast<int>(in.reference.weight.extent(1)); ++q) {
         double D[3][3], sigma[3][3], off[6];
-        if (K > 1 || q + s == 0) { // C eps is constant with order 1
-          gradient_in_space(
-              in, cell, c, u, [&](const int a, const int l) { return in.reference.gradient(s, q, a, l); }, D);
+        if (!Field::is_linear || q + s == 0) {
+          u.gradient_at(cell, c, s, q, D);
           stress_of_gradient(in.lame(in.block(c), 0), in.lame(in.block(c), 1), D, sigma);
           cell.image(sigma, of_u);
         }
@@ -350,19 +367,41 @@ void add_up(const SpaceInput &in, const SpaceForms &forms, const Tractions &t, c
   Kokkos::fence();
 }
 
+namespace
+{
+
+/// Over all ranks.
+StressDifference over_ranks(const Comm &comm, StressDifference d)
+{
+  d.energy = sum_all(comm, d.energy);
+  d.imbalance = max_all(comm, std::max(d.imbalance, 0.));
+  d.force = max_all(comm, std::max(d.force, 0.));
+  return d;
+}
+
+} // namespace
+
 StressDifference stress_difference(const SpaceInput &in, const Comm &comm, const SpaceForms &forms, const Tractions &t,
                                    const Vector &u, const DeviceView<double *> &of_cell)
 {
   StressDifference d;
   for_order(in.reference.degree, [&](const auto order) {
+    constexpr int k = order.value;
     Kokkos::parallel_reduce("rpc::bound::stress_difference", device_range(in.num_owned_cells),
-                            SpaceDifference<order.value>{in, forms, device_read(u), t, of_cell}, d.energy,
-                            Kokkos::Max<double>(d.imbalance), Kokkos::Max<double>(d.force));
+                            SpaceDifference<k>{in, forms, TetrahedronField<k>{in, device_read(u)}, t, of_cell},
+                            d.energy, Kokkos::Max<double>(d.imbalance), Kokkos::Max<double>(d.force));
   });
-  d.energy = sum_all(comm, d.energy);
-  d.imbalance = max_all(comm, std::max(d.imbalance, 0.));
-  d.force = max_all(comm, std::max(d.force, 0.));
-  return d;
+  return over_ranks(comm, d);
+}
+
+StressDifference stress_difference(const HexahedraInput &in, const Comm &comm, const SpaceForms &forms,
+                                   const Tractions &t, const FieldOfHexahedra &u, const DeviceView<double *> &of_cell)
+{
+  StressDifference d;
+  Kokkos::parallel_reduce("rpc::bound::stress_difference_in_hexahedra", device_range(in.num_owned_cells),
+                          SpaceDifference<1, FieldOfHexahedra>{in, forms, u, t, of_cell}, d.energy,
+                          Kokkos::Max<double>(d.imbalance), Kokkos::Max<double>(d.force));
+  return over_ranks(comm, d);
 }
 
 } // namespace rpc::bound

@@ -68,11 +68,12 @@ struct SpaceSideFacet {
   double block, modulus, prescribed;
 };
 
-std::vector<SpaceSideFacet> own_side_facets(const analysis::Problem &problem, const SpaceFacetsOnHost &host,
-                                            const std::vector<LO> &facets, const HostView<char *[3]> &prescribed)
+std::vector<SpaceSideFacet> own_side_facets(const fem::Discretization &discretization, const analysis::Model &model,
+                                            const SpaceFacetsOnHost &host, const std::vector<LO> &facets,
+                                            const HostView<char *[3]> &prescribed)
 {
   const auto block = to_host(host.mesh.block);
-  const auto lame = to_host(fem::lame_table(problem.discretization(), problem.model().materials));
+  const auto lame = to_host(fem::lame_table(discretization, model.materials));
   std::vector<SpaceSideFacet> all;
   for (const LO f : facets) {
     const LO cell = host.cell(f, 0);
@@ -171,9 +172,9 @@ std::string place_in_space(const Point &x)
   return "(" + shown(x[0]) + ", " + shown(x[1]) + ", " + shown(x[2]) + ")";
 }
 
-SpaceContact space_side(const analysis::Problem &problem, const analysis::Model &model, const analysis::Step &step,
-                        const SpaceFacetsOnHost &host, const int k, const PointTractions &solution,
-                        const HostView<char *[3]> &prescribed)
+SpaceContact space_side(const fem::Discretization &discretization, const analysis::Model &model,
+                        const analysis::Step &step, const SpaceFacetsOnHost &host, const int k,
+                        const PointTractions &solution, const HostView<char *[3]> &prescribed)
 {
   const contact::ContactOptions &options = model.contact[k];
   const Comm &comm = host.mesh.comm();
@@ -182,7 +183,8 @@ SpaceContact space_side(const analysis::Problem &problem, const analysis::Model 
   c.spring = 1 / law(options, 2);
   c.friction.acts = options.has_friction() && step.contact.friction.anywhere;
   const std::vector<LO> local = host.facets_of(host.mesh.side(options.side, options.path));
-  std::vector<SpaceSideFacet> facets = rows_of_all(comm, own_side_facets(problem, host, local, prescribed));
+  std::vector<SpaceSideFacet> facets =
+      rows_of_all(comm, own_side_facets(discretization, model, host, local, prescribed));
   c.points = rows_of_all(comm, own_side_points(step.contact, k, host, solution));
   if (facets.empty()) return c;
   RPC_REQUIRE(!c.points.empty(), not_covered_of_side(options, "the normal misses the foundation in a node"));

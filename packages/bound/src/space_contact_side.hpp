@@ -14,9 +14,9 @@ namespace rpc::bound
 /// @param model  seen at the time of the step   @param k  which contact side
 /// @param prescribed  (outer facets, component) 1 where the displacement is
 /// @throws rpc::Error (bad_input) where the side is not covered
-SpaceContact space_side(const analysis::Problem &problem, const analysis::Model &model, const analysis::Step &step,
-                        const SpaceFacetsOnHost &host, int k, const PointTractions &solution,
-                        const HostView<char *[3]> &prescribed);
+SpaceContact space_side(const fem::Discretization &discretization, const analysis::Model &model,
+                        const analysis::Step &step, const SpaceFacetsOnHost &host, int k,
+                        const PointTractions &solution, const HostView<char *[3]> &prescribed);
 
 /// "(x, y, z)".
 std::string place_in_space(const Point &x);

@@ -116,22 +116,6 @@ View view_of(const Values &values, const std::string &label)
   return view;
 }
 
-/// (local nodes) Numbers that do not depend on the ranks.
-std::vector<GO> ids_of(const fem::Discretization &d)
-{
-  const mesh::Mesh &mesh = *d.mesh;
-  const LO owned = mesh.num_owned_nodes();
-  HostView<double *> numbers("rpc::bound::numbers", owned); // whole ones below 2^53
-  for (LO n = 0; n < owned; ++n) numbers(n) = static_cast<double>(mesh.node_id(n));
-  std::vector<GO> id(mesh.num_local_nodes());
-  for (LO n = 0; n < owned; ++n) id[n] = mesh.node_id(n);
-  if (d.node_halo->is_empty()) return id;
-  const RCP<Vector> table = vector_of(numbers, mesh.owned_nodes);
-  const HostView<double *> all = host_copy(d.node_halo->at_columns(*table));
-  for (std::size_t n = owned; n < id.size(); ++n) id[n] = static_cast<GO>(all(n));
-  return id;
-}
-
 /// The cells at facets in their order, and which facet of these it is; collective.
 /// @param entity  (facets) number in the topology
 /// @param id  (local nodes)   @param nodes  (cells, nodes)   @param facet  (cells, 4)
@@ -187,11 +171,26 @@ void order_cells(const mesh::Topology &t, const std::vector<int> &entity, const 
 
 } // namespace
 
+std::vector<GO> ids_of_nodes(const fem::Discretization &d)
+{
+  const mesh::Mesh &mesh = *d.mesh;
+  const LO owned = mesh.num_owned_nodes();
+  HostView<double *> numbers("rpc::bound::numbers", owned); // whole ones below 2^53
+  for (LO n = 0; n < owned; ++n) numbers(n) = static_cast<double>(mesh.node_id(n));
+  std::vector<GO> id(mesh.num_local_nodes());
+  for (LO n = 0; n < owned; ++n) id[n] = mesh.node_id(n);
+  if (d.node_halo->is_empty()) return id;
+  const RCP<Vector> table = vector_of(numbers, mesh.owned_nodes);
+  const HostView<double *> all = host_copy(d.node_halo->at_columns(*table));
+  for (std::size_t n = owned; n < id.size(); ++n) id[n] = static_cast<GO>(all(n));
+  return id;
+}
+
 SpaceFacets space_facets_of(const fem::Discretization &d)
 {
   const mesh::Mesh &mesh = *d.mesh;
   const mesh::Topology t = mesh::topology(mesh);
-  const std::vector<GO> id = ids_of(d);
+  const std::vector<GO> id = ids_of_nodes(d);
   const mesh::Element &element = mesh.element;
   const int count = t.facets.size(), per_cell = element.num_nodes();
   const bool quadratic = element.order == 2;

@@ -54,6 +54,9 @@ struct SpaceFacets {
 /// @throws rpc::Error (bad_mesh) where the cells at an edge are no fan: parts of the body that meet in an edge
 SpaceFacets space_facets_of(const fem::Discretization &d);
 
+/// (local nodes) Numbers that do not depend on the ranks, Mesh::node_id. Collective.
+std::vector<GO> ids_of_nodes(const fem::Discretization &d);
+
 /// Numbers of facets, of their vertices 0, 1, 2 and of their edges 01, 12, 02, between ranks.
 struct SpaceExchanges {
   SlotExchange of_facets, of_vertices, of_edges;

@@ -44,7 +44,7 @@ void require_covered(const analysis::Task &task);
 void require_covered(const analysis::Problem &problem, const analysis::Step &step);
 
 /// Collective. @param solution  of a step that require_covered() admits
-/// @param steps  of conjugate gradients, see bound_rules; in space twice as many
+/// @param steps  of conjugate gradients, see bound_rules; in space twice as many, of hexahedra four times
 EnergyBound energy_bound(const analysis::Problem &problem, const analysis::StepSolution &solution,
                          const solver::LinearSolverOptions &options, int steps);
 

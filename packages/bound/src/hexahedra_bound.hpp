@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "rpc/bound/bound.hpp"
+#include "space_stress.hpp"
+
+/// What space_bound.hpp has, for hexahedra of order 1.
+namespace rpc::bound
+{
+
+/// Why the bound of a body of hexahedra is not known; empty if it is.
+/// @throws rpc::Error (bad_input) where boundary conditions are not covered
+std::string not_covered_of_hexahedra(const analysis::Problem &problem, const analysis::Step &step);
+
+/// @param steps  of conjugate gradients
+EnergyBound bound_of_hexahedra(const analysis::Problem &problem, const analysis::StepSolution &s,
+                               const solver::LinearSolverOptions &options, int steps);
+
+} // namespace rpc::bound

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rpc/core/error.hpp"
+#include "run_scene.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+// Guaranteed bounds of bodies of hexahedra, doc/bounds.md (13.9c) to (13.9e).
+
+namespace error_bound_hexahedra_test
+{
+namespace
+{
+
+using namespace rpc;
+
+using Assignments = std::vector<std::string>;
+
+const std::string decks = std::string(RPC_TEST_DECKS) + "/";
+
+Solution bounded(Assignments assignments, const std::string &deck = "clamped_block.xml")
+{
+  assignments.insert(assignments.end(), {"Mesh->Element=Q1", "Adapt->Error Bound=guaranteed"});
+  Solution s = run_scene(decks + deck, assignments);
+  EXPECT_TRUE(s.bound);
+  EXPECT_EQ(s.bound->missing, "");
+  return s;
+}
+
+TEST(ErrorBoundOfHexahedra, HoldsTheEnergyOfAFinerMeshAndIsNear)
+{
+  // Open, closed and yielding parts; loads that are not linear; a force per volume; sides that slide; a foundation that hardens, and rubs.
+  const Assignments scenes[] = {
+      {"Contact->Yield Stress=inf"},
+      {"Contact->Yield Stress=6", "Contact->Gap=0.02*x - 0.01"},
+      {"Contact->Yield Stress=8", "Traction->front->Z=-6*sin(1 + x*y)", "Body Force->Z=-3", "Body Force->X=2"},
+      {"Traction->front->X=2", "Dirichlet->bottom->Y=0", "Dirichlet->top->Y=0", "Contact->Gap=0.001"},
+      {"Contact->Yield Stress=2", "Contact->Hardening=300", "Contact->Stiffness=3e3", "Contact->Friction Bound=0.3"}};
+  for (const Assignments &scene : scenes) {
+    SCOPED_TRACE(scene.back());
+    const Solution s = bounded(scene);
+    Assignments finer = scene;
+    finer.insert(finer.end(), {"Mesh->Element=P2", "Mesh->Cells={8, 6, 4}", "Adapt->Error Bound=estimated"});
+    const Solution fine = run_scene(decks + "clamped_block.xml", finer);
+    ASSERT_TRUE(fine.estimate);
+    const double rubbed = fine.contact.total.friction_work, left = fine.estimate->total() / 2,
+                 true_error = s.bound->upper - (fine.energy + rubbed - left);
+    EXPECT_LT(s.bound->lower, fine.energy + rubbed - left);
+    EXPECT_GT(s.bound->upper, fine.energy + rubbed);
+    EXPECT_LT(s.bound->upper - s.bound->lower, 1.6 * 1.6 * true_error);
+    EXPECT_LT(s.bound->moved, 0.25 * s.bound->energy_norm);
+    EXPECT_LT(s.bound->imbalance, 1e-11);
+    ASSERT_EQ(s.bound->steps.size(), 13u);
+    for (int k = 0; k < 12; ++k) EXPECT_LT(s.bound->steps[k + 1], s.bound->steps[k]);
+    EXPECT_EQ(static_cast<LO>(s.bound->squared.extent(0)), s.discretization.mesh->num_owned_cells);
+  }
+}
+
+TEST(ErrorBoundOfHexahedra, IsZeroWhereTheElementsHaveTheSolution)
+{
+  for (const char *limit : {"inf", "2"}) {
+    SCOPED_TRACE(limit);
+    const Solution s = bounded({std::string("Contact->Yield Stress=") + limit}, "even_block_in_space.xml");
+    EXPECT_GT(s.energy_norm_squared, 1e-6);
+    EXPECT_NEAR(s.bound->upper, s.energy, 1e-12 * s.energy_norm_squared);
+    for (const double bound : s.bound->steps) EXPECT_LT(bound, 1e-11 * s.energy_norm_squared);
+  }
+}
+
+TEST(ErrorBoundOfHexahedra, IsRefusedForGapsAndDisplacementsThatBendBetweenTheHalvesOfAFace)
+{
+  const auto refused = [](const Assignments &more, const std::string &part) {
+    Assignments assignments = {"Mesh->Element=Q1", "Adapt->Error Bound=guaranteed"};
+    assignments.insert(assignments.end(), more.begin(), more.end());
+    try {
+      run_scene(decks + "clamped_block.xml", assignments);
+      ADD_FAILURE() << "not refused: " << part;
+    } catch (const Error &error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  };
+  refused({"Contact->Gap=0.01*x*y"}, "another than between its nodes");
+  refused({"Dirichlet->left->X=0.001*y*z"}, "linear on each triangle");
+}
+
+} // namespace
+} // namespace error_bound_hexahedra_test
