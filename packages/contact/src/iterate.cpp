@@ -4,6 +4,7 @@
 #include "rpc/algebra/along_points.hpp"
 #include "rpc/contact/energies.hpp"
 #include "rpc/contact/penalties.hpp"
+#include "rpc/contact/rounding.hpp"
 #include "rpc/contact/rules.hpp"
 #include "rpc/core/fingerprint.hpp"
 
@@ -233,7 +234,7 @@ double Iterate::force_scale() const
 {
   if (applied_force_ > 0) return applied_force_;
   const double contact_force = multiplier_forces(points_, duals_.multipliers(), hessian_->getDomainMap()).norm2();
-  if (contact_force > 0) return contact_force;
+  if (contact_force > Rounding::sum * prescribed_force_) return contact_force;
   return prescribed_force_ > 0 ? prescribed_force_ : 1;
 }
 

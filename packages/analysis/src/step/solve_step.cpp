@@ -184,11 +184,12 @@ Prediction predict(const Step &step, Iterate &iterate, Vector &u, const Starts &
   }
   const bool near = !starts.states.empty() && start_from_nearest(iterate, u, starts, prediction.nearest);
   if (near) return prediction;
+  const std::size_t nearest = prediction.nearest;
   if (starts.predict)
     prediction = starts.predict();
   else
     prediction.reason = "there is none";
-  if (starts.states.empty() || prediction.start) prediction.nearest = starts.states.size();
+  prediction.nearest = starts.states.empty() || prediction.start ? starts.states.size() : nearest;
   if (prediction.start) iterate.start_from(*prediction.start, u);
   if (!starts.states.empty()) prediction.reason.clear();
   return prediction;

@@ -93,7 +93,7 @@ public:
   /// The present state: displacement from 0, and copies of multipliers and states.
   ContactState state(const Vector &u) const;
 
-  /// |applied load|_2 on the free unknowns; without any, |contact force|_2; without that, the norm of the forces of
+  /// |applied load|_2 on the free unknowns; without any, |contact force|_2; where that is rounding, the norm of the forces of
   /// prescribed displacements on the free unknowns [N]; 1 if nothing acts. A rigid shift of the whole scene leaves it as it is
   /// where anything is applied or touches.
   double force_scale() const;
