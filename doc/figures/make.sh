@@ -34,6 +34,7 @@ bash "$root/doc/picture.sh" --output="$here/indent_force.png" "perfectly plastic
 /usr/bin/python3 "$here/track.py" "$here/track.png" "$work/track.e"
 bash "$root/doc/picture.sh" "$work/block_adaptive.e" --output="$here/block_adaptive.png"
 /usr/bin/python3 "$here/space_accuracy.py" "$here/space_accuracy.png" "$rpc"
+/usr/bin/python3 -B "$root/test/benchmark/friction_cost.py" draw "$root/doc/friction_cost.csv"
 bash "$root/doc/picture.sh" "$work/shear.e" --time=1.5 --output="$here/shear.png"
 bash "$root/doc/picture.sh" "$work/shear.history.csv" --output="$here/shear_force.png"
 bash "$root/doc/picture.sh" "$work/ball_friction.e" --window=-0.25,0,-0.01,0.25,0.25,0.15 --output="$here/ball_friction.png"
