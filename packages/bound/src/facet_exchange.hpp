@@ -2,6 +2,7 @@
 #pragma once
 
 #include "facets.hpp"
+#include "slot_exchange.hpp"
 
 #include <vector>
 
@@ -9,7 +10,7 @@ namespace rpc::bound
 {
 
 /// Brings numbers that belong to the end of a facet at a vertex which another rank owns: this one does not have all cells around it. Of a
-/// facet with both vertices elsewhere it may not have both cells, and so not the order of its ends.
+/// facet with both vertices elsewhere it may not have both cells, and so not the order of its ends: on the way a facet runs to its higher gid.
 class FacetExchange
 {
 public:
@@ -23,11 +24,8 @@ public:
   DeviceView<double **> fetch(const DeviceView<double ***> &values, const std::vector<double> &flip) const;
 
 private:
-  RCP<const Comm> comm_;
-  std::vector<LO> served_;            // 2 facet + end
-  std::vector<char> served_reversed_; // the facet begins at its higher gid
-  std::vector<std::size_t> place_;    // (rows) among what all ranks serve
-  std::vector<char> reversed_;        // (rows)
+  std::vector<char> falls_; // (facets) it begins at its higher gid
+  SlotExchange ends_;       // of facets that begin at their lower gid
   DeviceView<LO *[2]> row_;
 };
 

@@ -4,10 +4,10 @@
 #include "rpc/core/error.hpp"
 #include "rpc/core/parallel.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
 #include <array>
 #include <map>
+#include <numeric>
 
 namespace rpc::bound
 {
@@ -15,45 +15,40 @@ namespace rpc::bound
 SlotExchange::SlotExchange(const mesh::Mesh &mesh, const HostView<LO **> &node, const std::vector<int> &vertex_of)
     : comm_(mesh.owned_nodes->getComm())
 {
-  const int ranks = comm_->getSize(), own = comm_->getRank(), slots = static_cast<int>(vertex_of.size());
+  const int ranks = comm_->getSize(), slots = static_cast<int>(vertex_of.size());
   if (ranks == 1) return;
-  const GO begin = mesh.owned_nodes->getMinGlobalIndex(), count = mesh.num_owned_nodes();
-  std::vector<GO> begin_of(2 * ranks);
-  const GO mine[2] = {begin, count};
-  Teuchos::gatherAll(*comm_, 2, mine, 2 * ranks, begin_of.data());
-  const auto owner = [&](const GO gid) {
-    for (int r = 0; r < ranks; ++r)
-      if (gid >= begin_of[2 * r] && gid < begin_of[2 * r] + begin_of[2 * r + 1]) return r;
-    return own;
-  };
   constexpr int per_key = 4; // vertices of the facet, slot
   using Key = std::array<GO, per_key>;
   const LO facets = static_cast<LO>(node.extent(0));
   std::map<Key, LO> here; // facets by their vertices
-  std::vector<std::vector<Key>> wanted(ranks);
-  std::vector<std::vector<std::array<LO, 2>>> place(ranks);
+  std::vector<Key> wanted;
+  std::vector<std::array<LO, 2>> place; // facet and slot of each
+  std::vector<GO> vertex;
   for (LO f = 0; f < facets; ++f) {
-    Key key{mesh.node_gid(node(f, 0)), mesh.node_gid(node(f, 1)), mesh.node_gid(node(f, 2)), 0};
+    Key key{};
+    for (std::size_t k = 0; k < node.extent(1); ++k) key[k] = mesh.node_gid(node(f, k));
     here[key] = f;
     for (int s = 0; s < slots; ++s) {
-      const LO vertex = node(f, vertex_of[s]);
-      if (vertex < mesh.num_owned_nodes()) continue;
-      const int rank = owner(mesh.node_gid(vertex));
-      key[3] = s;
-      wanted[rank].push_back(key);
-      place[rank].push_back({f, s});
+      if (node(f, vertex_of[s]) < mesh.num_owned_nodes()) continue;
+      key[per_key - 1] = s;
+      wanted.push_back(key);
+      place.push_back({f, s});
+      vertex.push_back(mesh.node_gid(node(f, vertex_of[s])));
     }
   }
+  std::vector<int> rank(vertex.size()), counts(ranks);
+  mesh.owned_nodes->getRemoteIndexList(Teuchos::ArrayView<const GO>(vertex), Teuchos::ArrayView<int>(rank));
+  for (const int r : rank) ++counts[r];
+  std::vector<std::size_t> order(wanted.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](const auto a, const auto b) { return rank[a] < rank[b]; });
   rows_.of = DeviceView<LO **>("rpc::bound::rows_of_slots", facets, slots);
   const auto row = Kokkos::create_mirror_view(rows_.of);
   Kokkos::deep_copy(row, -1);
-  std::vector<int> counts(ranks);
   std::vector<double> keys;
-  LO rows = 0;
-  for (int r = 0; r < ranks; ++r) {
-    counts[r] = static_cast<int>(wanted[r].size());
-    for (const auto &at : place[r]) row(at[0], at[1]) = rows++;
-    for (const Key &key : wanted[r]) keys.insert(keys.end(), key.begin(), key.end());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    row(place[order[k]][0], place[order[k]][1]) = static_cast<LO>(k);
+    keys.insert(keys.end(), wanted[order[k]].begin(), wanted[order[k]].end());
   }
   Kokkos::deep_copy(rows_.of, row);
   exchange_.emplace(*comm_, counts);

@@ -10,7 +10,7 @@
 namespace rpc::bound
 {
 
-/// Rows of numbers that belong to slots of facets in space, such as their edges. A slot belongs to the rank of one vertex of its facet, which has
+/// Rows of numbers that belong to slots of facets, such as their edges or ends. A slot belongs to the rank of one vertex of its facet, which has
 /// all cells around that; other ranks that have the facet get its numbers from there.
 class SlotExchange
 {
