@@ -420,7 +420,7 @@ SizePlan plan_sizes(const EstimatedMesh &mesh, const SizeRequest &request)
     limit_growth(mesh, geometry, size);
     const double excess =
         corrections > 0 ? request.squared_error / squared_error_of(mesh, geometry, size, exponent, singular) : 1;
-    if (excess > size_rules.most_above || excess < size_rules.most_below) {
+    if (excess > size_rules.most_above || 1 / excess > size_rules.most_above) {
       level *=
           std::pow(excess, 1 + mesh.dim / (2. * mesh.order)); // cells of equal errors: eta^2 ~ level^(2p / (2p + dim))
       continue;

@@ -153,8 +153,7 @@ void Iterate::hold_by_contact()
 
 void Iterate::step_taken(const double length)
 {
-  if (length > start_rules.long_step && spring_ > 0)
-    spring_ = std::max<double>(start_rules.weaken * spring_, start_rules.least_spring);
+  if (length > start_rules.long_step && spring_ > 0) spring_ = start_rules.least_spring;
 }
 
 ActiveSetChoice Iterate::choose_active_set(const Vector &u, const double negligible) const

@@ -182,15 +182,11 @@ bool LinearSolver::Impl::sparse_pays(const double iterations_in_all, const doubl
   return found && found->cost.seconds < lost;
 }
 
-/// The same at the present rate of a solve, and where it would end at CG's limit by far: the factor takes over then anyway.
+/// The same at the present rate of a solve.
 bool LinearSolver::Impl::sparse_pays_now(const Convergence &seen, const double tolerance)
 {
   if (seen.iterations() < options.first_iterations) return false;
-  const double limit = options.max_iterations, by_far = linear_rules.far_beyond * limit;
-  if (seen.iterations() >= limit / linear_rules.far_beyond && seen.iterations_in_all(tolerance, by_far) >= by_far &&
-      prospect())
-    return true;
-  return sparse_pays(seen.iterations_in_all(tolerance, limit), tolerance) &&
+  return sparse_pays(seen.iterations_in_all(tolerance, options.max_iterations), tolerance) &&
          seen.iterations() * seconds_of_cg.measured >= linear_rules.part_to_tell * sparse->prospect().cost.seconds;
 }
 
@@ -350,8 +346,6 @@ void LinearSolver::Impl::put_out(Candidate &candidate, const State state, const 
   candidate.B->forget();
   candidate.state = state;
   row(candidate).left = reason;
-  if (candidate.kind == Kind::mixed && state == State::left)
-    options.first_iterations = LinearSolverOptions().first_iterations;
   if (candidate.kind != Kind::meshes) return;
   counts.fallback = reason;
   stands_in_for = &candidate;

@@ -82,8 +82,7 @@ void assemble(solver::MeshLevel &level)
 /// Unknowns with which a mesh is factored, without a coarser one. Where a body is one cell across, contracted meshes are much too stiff.
 GO fewest_unknowns(const mesh::Mesh &finest)
 {
-  if (finest.parents && !finest.parents->nested) return mesh::contraction_rules.few;
-  return finest.dim() == 2 ? mesh::coarsening_rules.few_2d : mesh::coarsening_rules.few_3d;
+  return finest.parents && !finest.parents->nested ? mesh::contraction_rules.few : mesh::coarsening_rules.few;
 }
 
 std::optional<int> thin_direction(const NestedMesh &mesh)

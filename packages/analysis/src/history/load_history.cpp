@@ -332,8 +332,8 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
     s.prediction_seconds += std::exchange(prediction_seconds, 0);
     const Point way = left_to_go(*problem_, s), seen = s.step.obstacle, place = places.next(seen, way);
     const bool rounds = searched && length(way) >= length(way_before);
-    const bool rests =
-        !is_rough && obstacle_rests(*problem_, s, (rounds ? step_rules.of_rounding : 1.) * options.uzawa.tolerance);
+    const double of_rounding = step_rules.of_rounding * options.uzawa.tolerance;
+    const bool rests = !is_rough && obstacle_rests(*problem_, s, rounds ? of_rounding : options.uzawa.tolerance);
     if (by_force) take_to_obstacle(way, s);
     if (searched) add_searched(*searched, s);
     if (!s.uzawa.converged) return s;
@@ -343,7 +343,7 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
       break;
     }
     const auto next = on_foundation ? met_at(*s.u, s.step.obstacle) : met;
-    if (rests && (!on_foundation || settled(*met, *next, kept_.memory->foundations))) break;
+    if (rests && (!on_foundation || settled(*met, *next, kept_.memory->foundations, of_rounding))) break;
     met = next;
     step = problem_->step(t, met.get(), memory(), by_force ? &place : nullptr);
     starts = {{onto(s.step.contact, step.contact, s.state)}, {}};

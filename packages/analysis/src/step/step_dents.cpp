@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "step/step_dents.hpp"
 
-#include "rpc/analysis/rules.hpp"
 #include "rpc/contact/node_columns.hpp"
 #include "rpc/core/parallel.hpp"
 
@@ -89,12 +88,13 @@ Vector moved_along(const Problem &problem, const double t, const Vector &u)
   return moved;
 }
 
-bool settled(const MultiVector &used, const MultiVector &met, const std::vector<contact::FoundationDents> &foundations)
+bool settled(const MultiVector &used, const MultiVector &met, const std::vector<contact::FoundationDents> &foundations,
+             const double tolerance)
 {
   MultiVector change(met, Teuchos::Copy);
   change.update(-1., used, 1.);
   for (std::size_t k = 0; k < foundations.size(); ++k)
-    if (change.getVector(k)->normInf() > step_rules.dents_settled * foundations[k].deepest) return false;
+    if (change.getVector(k)->normInf() > tolerance * foundations[k].deepest) return false;
   return true;
 }
 

@@ -19,7 +19,8 @@ void remember_dents(const Problem &problem, const std::vector<contact::ContactOp
 /// @param u  (owned dofs) [m]
 Vector moved_along(const Problem &problem, double t, const Vector &u);
 
-/// Whether the dents met have converged: their changes since the last solve are below a part of the deepest dent of each side. Collective.
-bool settled(const MultiVector &used, const MultiVector &met, const std::vector<contact::FoundationDents> &foundations);
+/// Whether the dents met have converged: their changes since the last solve are below this part of the deepest dent of each side. Collective.
+bool settled(const MultiVector &used, const MultiVector &met, const std::vector<contact::FoundationDents> &foundations,
+             double tolerance);
 
 } // namespace rpc::analysis

@@ -136,7 +136,7 @@ private:
   {
     const FeatureFacet &a = features_.facets[f], &b = features_.facets[g];
     return a.label == b.label &&
-           cosine(facet_normal(mesh_, a.vertex), facet_normal(mesh_, b.vertex)) > contraction_rules.edge_cosine;
+           cosine(facet_normal(mesh_, a.vertex), facet_normal(mesh_, b.vertex)) > contraction_rules.least_cosine;
   }
   void find_edges()
   {
@@ -160,7 +160,7 @@ private:
       before[d] = x(at) - x(from);
       after[d] = x(to) - x(at);
     }
-    return !(cosine(before, after) > contraction_rules.edge_cosine);
+    return !(cosine(before, after) > contraction_rules.least_cosine);
   }
   bool is_corner_in_plane(const int n) const
   {

@@ -64,7 +64,7 @@ std::vector<MeshData> contracted_levels(MeshData finest)
   const int dim = levels.front().element.dim, order = levels.front().element.order;
   for (MeshData mesh = levels.front();;) { // of order 1 but for the first
     const int vertices = mesh.num_nodes();
-    if (dim * vertices <= (dim == 2 ? coarsening_rules.few_2d : coarsening_rules.few_3d)) break;
+    if (dim * vertices <= coarsening_rules.few) break;
     auto coarse = contracted(mesh);
     if (!coarse || coarse->num_cells() < coarsening_rules.least_cells_of_rank) break;
     levels.push_back(order == 2 ? with_middle_nodes(*coarse) : *coarse);

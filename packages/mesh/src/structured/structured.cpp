@@ -30,8 +30,7 @@ Levels levels_of(MeshData whole)
   levels.mesh.push_back(std::move(whole));
   for (;;) {
     const MeshData &fine = levels.mesh.back();
-    const int dim = fine.element.dim, few = dim == 2 ? coarsening_rules.few_2d : coarsening_rules.few_3d;
-    if (dim * fine.num_nodes() <= few) break;
+    if (fine.element.dim * fine.num_nodes() <= coarsening_rules.few) break;
     LayeredMesh found = layered(fine);
     if (!found.coarser || found.coarser->mesh.num_nodes() > coarsening_rules.most_kept * fine.num_nodes() ||
         found.coarser->mesh.num_cells() < coarsening_rules.least_cells_of_rank)

@@ -103,21 +103,16 @@ bool DirectSolver::make()
 /// than the factors that were made before.
 std::optional<CoarsestSolver::Update> DirectSolver::follow(const double slight)
 {
-  if (!may_follow_ ||
-      cost().seconds < std::max<double>(linear_rules.short_time, linear_rules.few_columns * cost().seconds_of_column))
-    return std::nullopt;
+  if (!may_follow_ || cost().seconds < linear_rules.short_time) return std::nullopt;
   const MatrixChanges changes = changes_since(factored_, *A_, dofs_per_node_);
-  const bool may_leave_out = cost().seconds >= linear_rules.few_solves * cost().seconds_of_solve;
   const double of_all = linear_rules.worth_factors * std::min<int>(factors_, linear_rules.most_factors_worth);
   for (const double worth : {double(linear_rules.worth_a_factor), of_all})
-    for (double least = 0; least <= (may_leave_out ? slight : 0);
-         least = least > 0 ? 10 * least : double(linear_rules.least_left_out)) {
+    for (double least = 0; least <= slight; least = least > 0 ? 10 * least : double(linear_rules.least_left_out)) {
       const LowRankTerms wanted = low_rank_terms(changes, least, dofs_per_node_);
       if (cost().seconds_of_column * update_.num_new(wanted.terms) > worth * cost().seconds) continue;
       const Comm &comm = *A_->getComm();
       const bool has_vectors = to_root_.is_null() || comm.getRank() == 0;
-      const double most_kept = std::min(linear_rules.kept_of_factor * cost().entries,
-                                        linear_rules.kept_of_free * min_all(comm, memory_left()) / sizeof(double));
+      const double most_kept = linear_rules.kept_of_free * min_all(comm, memory_left()) / sizeof(double);
       update_.set(*factor_, static_cast<int>(A_->getGlobalNumRows()), has_vectors, wanted.terms, wanted.couplings,
                   most_kept);
       return least == 0 ? Update::exact : Update::rough;

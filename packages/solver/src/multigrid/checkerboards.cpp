@@ -138,8 +138,8 @@ Checkerboards::Checkerboards(const StiffDilatation &dilatation, const RCP<CrsMat
 {
   largest_ = largest_eigenvalue(*A, [](const Vector &r, Vector &z) { z.assign(r); });
   const double softest = largest_ / least_softness(scale_, dilatation);
-  const double condition =
-      dilatation.alternating_ones_move ? std::min<double>(softest, linear_rules.condition_where_all_move) : softest;
+  const double of_least_degree = std::pow(linear_rules.least_degree / linear_rules.degree_of_root, 2);
+  const double condition = dilatation.alternating_ones_move ? std::min(softest, of_least_degree) : softest;
   const double root = std::sqrt(condition);
   degree_ = degree_for_pressures(condition);
   const double reached = std::min(root, degree_ / linear_rules.degree_of_root);

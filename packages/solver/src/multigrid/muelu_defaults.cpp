@@ -24,7 +24,7 @@ Teuchos::ParameterList muelu_defaults(const Map &dofs, const int dofs_per_node)
   list.set("smoother: type", "CHEBYSHEV");
   Teuchos::ParameterList &smoother = list.sublist("smoother: params");
   smoother.set("chebyshev: degree", int(linear_rules.muelu_degree));
-  smoother.set("chebyshev: ratio eigenvalue", double(linear_rules.muelu_ratio));
+  smoother.set("chebyshev: ratio eigenvalue", double(linear_rules.smoother_ratio));
   smoother.set("chebyshev: eigenvalue max iterations", 20);
   // On several ranks there is always a level below the finest one, so that what is solved directly has gone to one rank.
   const GO rows = static_cast<GO>(dofs.getGlobalNumElements());

@@ -74,7 +74,7 @@ void Algebraic::set_up()
   correction_.reset();
   if (A_.is_null()) A_ = H_->base().copy();
   if (!for_each_state_) {
-    write(bounded_update(*H_, linear_rules.most_stiffness));
+    write(bounded_update(*H_, linear_rules.most_on_coarse_meshes));
     correction_ = LocalCorrection::around(*H_, *A_, written_);
   }
   if (!correction_) write(bounded_update(*H_));

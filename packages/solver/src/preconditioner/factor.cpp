@@ -5,6 +5,7 @@
 #include "rpc/core/parallel.hpp"
 #include "rpc/solver/rules.hpp"
 
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -61,7 +62,7 @@ Preconditioner::Prepared Factor::prepare(double)
     return refused_ ? Prepared::refused : Prepared::made;
   }
   if (!obstacle.empty()) throw std::runtime_error(obstacle);
-  const auto bounded = bounded_update(*H_, linear_rules.most_closed_stiffness);
+  const auto bounded = bounded_update(*H_, std::numeric_limits<double>::max());
   has_all_ = are_equal(*H_->getDomainMap()->getComm(), bounded, H_->update());
   write_update(*A_, *H_, bounded);
   last_update_ = solver_->update(linear_rules.slight_change);

@@ -4,6 +4,7 @@
 #include "multigrid/checkerboards.hpp"
 #include "multigrid/shared_rows.hpp"
 #include "rpc/core/math.hpp"
+#include "rpc/core/rules.hpp"
 #include "rpc/solver/rules.hpp"
 
 #include <algorithm>
@@ -263,7 +264,7 @@ KrylovResult Mixed::solve(const Vector &b, Vector &x, const Accuracy &wanted, co
       result.given_up = gives_up(result.iterations + k,
                                  before / norm * std::pow(left / before, static_cast<double>(k) / pass.iterations));
     result.iterations += pass.iterations;
-    if (!(left < linear_rules.stalled * before)) break;
+    if (!(left < headway_rules.falls * before)) break;
   }
   if (!result.converged)
     result.reason = (result.given_up ? "given up after " : "|r|/|b| = " + std::to_string(result.residual) + " after ") +

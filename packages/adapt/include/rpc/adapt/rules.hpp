@@ -74,9 +74,9 @@ struct SizeRules {
                              "doc/theory.md (10.6)"};
   Rule<int> most_corrections{6, "sizes.most_corrections",
                              "of the level for the error of the sizes, in space [-]; off: 0", "doc/theory.md (10.5a)"};
-  Rule<double> most_above{1.1, "sizes.most_above", "squared error asked for over that of the sizes: right [-]",
+  Rule<double> most_above{1.05, "sizes.most_above",
+                          "squared error asked for over that of the sizes, or the other way round: right [-]",
                           "not measured"};
-  Rule<double> most_below{0.95, "sizes.most_below", "the same, the least that is right [-]; off: 0", "not measured"};
   Rule<double> level_step{1.5, "sizes.level_step", "factor of the level while there are too many cells [-]; off: 1.1",
                           "not measured"};
 };

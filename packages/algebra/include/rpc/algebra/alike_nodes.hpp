@@ -74,7 +74,8 @@ std::optional<AlikeNodes> alike_nodes_of(const LO num_nodes, const Alike &alike)
     repeated += took - 1; // all but the example
     result.example.push_back(take.example);
     // Few nodes of many kinds promise a mesh without order, and each kind costs a pass over the nodes.
-    if (static_cast<int>(result.example.size()) >= kind_rules.enough && repeated < kind_rules.few_nodes * num_nodes)
+    const auto kinds = static_cast<double>(result.example.size());
+    if (kinds >= kind_rules.enough && repeated / kinds < kind_rules.least_part * num_nodes / kind_rules.most)
       return std::nullopt;
   }
   if (repeated < kind_rules.least_part * num_nodes) return std::nullopt;

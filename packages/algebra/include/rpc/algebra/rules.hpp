@@ -9,9 +9,9 @@ namespace rpc
 /// Numbers that steer whether nodes are sorted into kinds with equal rows, see core/rule.hpp.
 struct KindRules {
   Rule<int> most{600, "kinds.most", "kinds at most [-]; off: 0", "doc/theory.md, section 4"};
-  Rule<int> enough{30, "kinds.enough", "kinds after which few repeated nodes end it [-]; off: 1e9",
+  Rule<int> enough{30, "kinds.enough",
+                   "kinds after which it ends if most kinds, at their rate, miss least_part [-]; off: 1e9",
                    "doc/theory.md, section 4"};
-  Rule<double> few_nodes{0.05, "kinds.few_nodes", "part of the nodes that is few [-]", "doc/theory.md, section 4"};
   Rule<double> least_part{0.75, "kinds.least_part", "part of the nodes that repeat, worth it [-]",
                           "doc/theory.md, section 4"};
 };

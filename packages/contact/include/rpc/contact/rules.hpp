@@ -24,10 +24,6 @@ struct InteriorRules {
   Rule<double> to_boundary{0.98, "interior.to_boundary",
                            "part of the way to the next point's corner that a step takes [-]; off: 1",
                            "doc/theory.md (5.19)"};
-  Rule<double> most_part{0.9, "interior.most_part", "of mu, that the next step aims at: the most [-]; off: 1",
-                         "doc/theory.md (5.19)"};
-  Rule<double> least_part{1e-3, "interior.least_part", "of mu, that the next step aims at: the least [-]",
-                          "doc/theory.md (5.19)"};
   Rule<double> longer_by{0.3, "interior.longer_by",
                          "step that a corrector of Gondzio aims at, beyond the one that can be taken [-]",
                          "doc/theory.md (5.19a)"};
@@ -56,9 +52,7 @@ struct StartRules {
   // against the rounding of K.
   Rule<double> spring{1e-4, "start.spring", "stiffness of the springs over E/diameter [-]; off: 1e-10",
                       "doc/theory.md (9.8)"};
-  Rule<double> least_spring{1e-10, "start.least_spring", "the same at last [-]", "doc/theory.md (9.8)"};
-  Rule<double> weaken{1e-2, "start.weaken", "factor of the springs after a long step [-]; off: 1",
-                      "doc/theory.md (9.8)"};
+  Rule<double> least_spring{1e-10, "start.least_spring", "the same after a long step [-]", "doc/theory.md (9.8)"};
   Rule<double> long_step{1.1, "start.long_step",
                          "step length that shows springs at work: that of a quadratic is 1 [-]; off: 1e9",
                          "doc/theory.md (9.8)"};

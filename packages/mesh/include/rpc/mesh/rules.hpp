@@ -9,15 +9,13 @@ namespace rpc::mesh
 
 /// Of boxes, structured grids, meshes whose edges are contracted, and nested ones.
 struct CoarseningRules {
-  Rule<int> few_2d{800, "coarsening.few_2d", "unknowns in the plane with no coarser mesh [-]",
-                   "not measured: as many are factored in no time"};
-  Rule<int> few_3d{400, "coarsening.few_3d", "the same in space [-]", "not measured"};
-  Rule<double> most_kept{0.7, "coarsening.most_kept", "part of the nodes in a coarser mesh worth having [-]; off: 1",
-                         "doc/theory.md, section 2"};
+  Rule<int> few{400, "coarsening.few", "unknowns with no coarser mesh [-]", "measurements.md: Ablation of all rules"};
+  Rule<double> most_kept{
+      0.7, "coarsening.most_kept",
+      "part of the nodes in a coarser mesh, or in the parent of a nested one, worth having [-]; off: 1",
+      "doc/theory.md, section 2"};
   Rule<int> least_cells_of_rank{16, "coarsening.least_cells_of_rank",
                                 "cells of a coarser mesh on each of its ranks [-]", "not measured"};
-  Rule<double> least_added{1.3, "coarsening.least_added", "nodes of a nested mesh over its parent's [-]; off: 1",
-                           "doc/measurements.md: Adapted meshes in space"};
   Rule<double> equally_long{1.7, "coarsening.equally_long", "node distance or sheet, over the least, still alike [-]",
                             "doc/theory.md (4.7e)"};
   Rule<int> shortest_ring{6, "coarsening.shortest_ring", "sheets around a hole that may be joined in pairs [-]",
@@ -35,14 +33,13 @@ struct ContractionRules {
   Rule<double> part_kept{0.8, "contraction.part_kept",
                          "quality over that of the worst cell before that will do [-]; off: 1",
                          "doc/theory.md, section 2"};
-  Rule<double> least_cosine{0.8, "contraction.least_cosine", "cosine of the turn of a boundary facet [-]",
+  Rule<double> least_cosine{0.8, "contraction.least_cosine",
+                            "cosine of the turn of a boundary facet, and of the angle at an edge of the body [-]",
                             "doc/theory.md, section 2: 37 degrees"};
   // In a cube cut into tetrahedra edges are up to 1.73 times as long as the shortest one, and where inner nodes are moved by 15 % of a cell up
   // to 2.7 times.
   Rule<double> most_stretched{3, "contraction.most_stretched",
                               "length of edges over the shortest that join neighbours [-]", "doc/theory.md, section 2"};
-  Rule<double> edge_cosine{0.766, "contraction.edge_cosine", "cosine of the angle at an edge of the body [-]; off: -1",
-                           "doc/theory.md, section 2: 40 degrees"};
 };
 inline constexpr_rules ContractionRules contraction_rules;
 

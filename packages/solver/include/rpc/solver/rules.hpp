@@ -28,8 +28,6 @@ struct LinearRules {
   Rule<int> solves_with_contact{4, "linear.solves_with_contact", "solves to come with contact [-]", "random families"};
   Rule<double> part_to_tell{0.3, "linear.part_to_tell", "time of a factor before CG's rate is believed [-]",
                             "CG stalls at first, and is fast then, where layers are of unlike stiffness"};
-  Rule<double> far_beyond{2, "linear.far_beyond", "predicted over allowed, and allowed over past CG iterations [-]",
-                          "not measured"};
   Rule<double> few_iterations{5.5, "linear.few_iterations", "iterations worth a band factor [-]", "(4.10e)"};
   Rule<double> few_iterations_on_ranks{11, "linear.few_iterations_on_ranks", "the same on several ranks of hosts [-]",
                                        "two ranks halve an iteration, and slender bodies need more of them"};
@@ -42,8 +40,6 @@ struct LinearRules {
                        "a stall is an error of ten gains, (4.10c)"};
   Rule<double> small_error{1e-4, "linear.small_error", "error at which a breakdown is that of rounding [-]",
                            "of a singular matrix most of the error is left"};
-  Rule<double> large_error{1e-2, "linear.large_error", "error for one application of an exact factor [-]",
-                           "not measured"};
   Rule<int> gmres_vectors{50, "linear.gmres_vectors", "GMRES iterations before a restart [-]",
                           "with multigrid it takes fewer"};
 
@@ -52,27 +48,23 @@ struct LinearRules {
                                "its own residuals are no longer those of x by then"};
   Rule<double> residual_of_pass{0.1, "linear.residual_of_pass", "largest residual ratio that a pass is asked for [-]",
                                 "its own residual is a little below that of H x = b"};
-  Rule<double> stalled{0.5, "linear.stalled", "residual ratio of a pass that has stalled [-]", "not measured"};
   Rule<double> degree_of_root{0.7, "linear.degree_of_root", "degree over the root of the condition number [-]",
                               "least time"};
   Rule<int> least_degree{4, "linear.least_degree", "degree for pressures at least [-]", "least time"};
   Rule<int> largest_degree{40, "linear.largest_degree", "degree for pressures at most [-]", "not measured"};
-  Rule<double> condition_where_all_move{30, "linear.condition_where_all_move",
-                                        "largest condition where each pressure moves the body [-]",
-                                        "the least degree is enough for it"};
 
   // Multigrid on meshes, (4.7a) - (4.7c).
   Rule<int> smoother_degree{3, "linear.smoother_degree", "degree of the smoother [-]",
                             "least time, 15 iterations to 1e-8 in the plane, 20 in space"};
-  Rule<double> smoother_ratio{10, "linear.smoother_ratio", "largest over smallest damped eigenvalue, order 1 [-]",
-                              "the same"};
+  Rule<double> smoother_ratio{10, "linear.smoother_ratio",
+                              "largest over smallest damped eigenvalue, order 1, and MueLu's [-]", "the same"};
   Rule<double> smoother_ratio_order_two{16, "linear.smoother_ratio_order_two", "the same of order 2 [-]", "the same"};
   Rule<int> lanczos_steps{10, "linear.lanczos_steps", "steps for the largest eigenvalue [-]",
                           "they find it to a few per cent"};
   Rule<double> lanczos_margin{1.08, "linear.lanczos_margin", "factor on the eigenvalue found [-]",
                               "covers these per cent"};
   Rule<double> most_on_coarse_meshes{1, "linear.most_on_coarse_meshes",
-                                     "contact on coarse meshes over own stiffness [-]",
+                                     "contact on coarse meshes, and in MueLu's hierarchy, over own stiffness [-]",
                                      "with 1/4 or 4 CG takes a fourth more iterations"};
   Rule<double> slight_change{0.1, "linear.slight_change", "change over own stiffness that is left to CG [-]",
                              "a solver that misses points that close is useless, (4.12)"};
@@ -80,8 +72,6 @@ struct LinearRules {
                             "a renewal takes two CG iterations, the old one costs a step about as many"};
 
   // MueLu's hierarchy, (4.8), (4.9).
-  Rule<double> most_stiffness{5, "linear.most_stiffness", "contact in MueLu's hierarchy over own stiffness [-]",
-                              "with all of the penalty CG takes a third more iterations"};
   Rule<double> setup_in_iterations{12, "linear.setup_in_iterations", "CG iterations in the time of a set-up [-]",
                                    "not measured"};
   Rule<double> few_digits{2, "linear.few_digits", "digits that tell nothing of the rate [-]", "not measured"};
@@ -93,7 +83,6 @@ struct LinearRules {
   Rule<double> patch_work{3e3, "linear.patch_work", "multiplications of a patch's factor, a row of H [-]",
                           "a fraction of a set-up"};
   Rule<int> muelu_degree{2, "linear.muelu_degree", "degree of MueLu's smoother [-]", "not measured"};
-  Rule<double> muelu_ratio{7, "linear.muelu_ratio", "largest over least damped eigenvalue, MueLu [-]", "not measured"};
   Rule<int> strong_degree{8, "linear.strong_degree", "degree of the stronger smoother [-]", "not measured"};
   Rule<double> strong_ratio{50, "linear.strong_ratio", "ratio of the stronger smoother [-]", "not measured"};
   Rule<GO> least_coarsening{4, "linear.least_coarsening", "rows over those of the last level on ranks [-]",
@@ -105,9 +94,6 @@ struct LinearRules {
                               "their factor costs next to nothing"};
 
   // Factors, (4.10) - (4.12).
-  Rule<double> most_closed_stiffness{1e4, "linear.most_closed_stiffness",
-                                     "contact in a sparse factor over own stiffness [-]",
-                                     "all of it costs digits where a node opens"};
   Rule<double> most_work{1e7, "linear.most_work", "multiplications of a factor of few unknowns [-]", "not measured"};
   Rule<double> most_work_on_one_of_several{1e8, "linear.most_work_on_one_of_several",
                                            "the same where one of several ranks has all rows [-]",
@@ -124,16 +110,12 @@ struct LinearRules {
                                  "times of both"};
   Rule<int> most_width{200, "linear.most_width", "width of a band as numbered [-]", "times of both"};
   Rule<double> short_time{5e-3, "linear.short_time", "a factor made for the slightest change [s]", "not measured"};
-  Rule<double> few_columns{3, "linear.few_columns", "the same in solves with one column [-]", "not measured"};
-  Rule<double> few_solves{8, "linear.few_solves", "solves worth a factor that leaves nothing out [-]", "(4.12)"};
   Rule<double> worth_a_factor{0.7, "linear.worth_a_factor", "time of an update over a factor's [-]", "(4.11)"};
   Rule<double> worth_factors{1.4, "linear.worth_factors", "the same over all factors made so far [-]",
                              "later changes are at the same places"};
   Rule<int> most_factors_worth{3, "linear.most_factors_worth", "factors that count as made so far [-]", "not measured"};
   Rule<double> least_left_out{1e-5, "linear.least_left_out",
                               "least bound of changes left to CG, over own block [-]; off: 1", "(4.12)"};
-  Rule<double> kept_of_factor{2, "linear.kept_of_factor", "entries of an update over those of the factor [-]",
-                              "not measured"};
   Rule<double> kept_of_free{0.25, "linear.kept_of_free", "entries of an update over the free memory [-]",
                             "not measured"};
   Rule<double> seconds_in_background{1, "linear.seconds_in_background", "factor made where an interrupt is seen [s]",
@@ -147,8 +129,6 @@ struct CostModel {
   Rule<double> entry{8e-9, "cost.entry", "an entry of K in a CG iteration [s]", "iterations on one core"};
   Rule<double> repeated_entry{1e-9, "cost.repeated_entry", "such an entry where rows of K repeat [s]", "within a half"};
   Rule<double> repeated_row{70e-9, "cost.repeated_row", "a row of K where rows repeat [s]", "within a half"};
-  Rule<double> entry_against_factor{2e-9, "cost.entry_against_factor", "a repeated entry against a factor in 2D [s]",
-                                    "vectors count for more there"};
   Rule<double> gpu{50, "cost.gpu", "times as fast on a GPU as on a core [-]", "an H100"};
   Rule<double> launches{2e-3, "cost.launches", "of a cycle on a GPU at least [s]", "an H100"};
   // MUMPS, of 1e7 to 1e11 multiplications: within 15 % of the times.
@@ -159,12 +139,10 @@ struct CostModel {
   Rule<double> columns_for_one{12, "cost.columns_for_one", "columns at contact nodes for one right side [-]",
                                "10 to 24"};
   Rule<double> gain{0.6, "cost.gain", "P ranks are P to this power times as fast [-]", "two ranks"};
-  // A band factor: LAPACK works by blocks where it is wide.
-  Rule<double> wide{64, "cost.wide", "width of a wide band [-]", "LAPACK's blocks"};
-  Rule<double> wide_band{1.5e-11, "cost.wide_band", "of a multiplication in a wide band [s]", "one core"};
-  Rule<double> narrow_band{1e-10, "cost.narrow_band", "of a multiplication in a narrow band [s]", "one core"};
+  // A band factor by LAPACK.
+  Rule<double> band{1.5e-11, "cost.band", "of a multiplication in a wide band; in a narrow one entries take longer [s]",
+                    "one core"};
   Rule<double> band_entry{6e-9, "cost.band_entry", "of an entry of the band [s]", "one core"};
-  Rule<double> band_row_in_solve{18e-9, "cost.band_row_in_solve", "of a row in a solve [s]", "one core"};
   Rule<double> band_entry_in_solve{1e-9, "cost.band_entry_in_solve", "of an entry in a solve [s]", "one core"};
 };
 inline constexpr_rules CostModel cost_model;
@@ -173,8 +151,9 @@ inline constexpr_rules CostModel cost_model;
 struct NewtonRules {
   Rule<double> forcing{5e-3, "newton.forcing", "|r|/|F| while the Hessian changes [-]",
                        "a rough direction leads down as well as an exact one"};
-  Rule<double> beside_target{0.1, "newton.beside_target", "|r| of a direction over the target of |F| [-]",
-                             "not measured"};
+  Rule<double> beside_target{0.3, "newton.beside_target",
+                             "|r| of a last solve over the target of |F|: recomputed it is larger [-]",
+                             "measurements.md: Ablation of all rules"};
   Rule<double> largest_residual{0.1, "newton.largest_residual", "|r|/|F| of any direction, at most [-]",
                                 "not measured"};
   Rule<double> cut_short{0.02, "newton.cut_short", "length of a step that ended at a kink [-]", "(4.6)"};
@@ -183,10 +162,11 @@ struct NewtonRules {
   Rule<int> most_earlier_directions{9, "newton.most_earlier_directions",
                                     "directions to minimize within, besides the new one [-]",
                                     "5: a slender body takes 75 steps instead of 53; 20 add nothing"};
-  Rule<int> most_inner_steps{50, "newton.most_inner_steps",
-                             "steps of an iteration within another one: interior path, choices by a coarser mesh, "
-                             "prediction, given bounds of friction, line search [-]",
-                             "measurements.md, 2026-11-30: no bound from 20 to 50 was met"};
+  Rule<int> most_inner_steps{
+      50, "newton.most_inner_steps",
+      "steps of an iteration within another one: interior path, choices by a coarser mesh, "
+      "prediction, given bounds of friction, line search; choices, and returns to them, once Newton has begun [-]",
+      "measurements.md, 2026-11-30: no bound from 20 to 50 was met"};
   Rule<int> most_halvings{10, "newton.most_halvings",
                           "of an interval, in the search for the pieces of a line function [-]", "not measured"};
   Rule<double> full_step{0.5, "newton.full_step", "length of a step that counts as full [-]", "not measured"};

@@ -127,8 +127,8 @@ KOKKOS_INLINE_FUNCTION InteriorTarget corrected_target(const InteriorPoint &chan
 /// The mu to aim at after a step that mu = 0 would allow a part t of.                                               (5.19)
 inline double aimed_mu(const double mu, const double t)
 {
-  const double most = interior_rules.most_part, least = interior_rules.least_part;
-  return math::larger(least, math::fmin(most, (1 - t) * (1 - t))) * mu;
+  const double left = 1 - interior_rules.to_boundary * t;
+  return left * left * mu;
 }
 
 /// The point after a part of a change.
