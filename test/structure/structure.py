@@ -65,7 +65,7 @@ NOT_IN_PROGRAM = {
 # Numbers of a contact law at a point, which the functions of law/ alone read; who fills them.
 LAW_PARAMETERS = re.compile(r"(?:\.|->)(?:yield|hardening|compliance)\b(?!_)")
 LAW_FOLDER = "packages/contact/include/rpc/contact/law"
-LAW_FILLERS = {"packages/contact/src/between_nodes.cpp", "packages/contact/src/contact_nodes.cpp", "packages/contact/src/contact_options.cpp",
+LAW_FILLERS = {"packages/contact/src/gap_reading.cpp", "packages/contact/src/contact_nodes.cpp", "packages/contact/src/contact_options.cpp",
                "packages/analysis/src/body/problem.cpp"}  # options of the deck, and the points' views
 MOST_LINES = 450  # of a source file of a package or the program, tests included
 FOR_TESTS = {"mesh", "fem"}  # a package's tests may make their bodies with these

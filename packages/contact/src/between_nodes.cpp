@@ -2,6 +2,7 @@
 #include "rpc/contact/between_nodes.hpp"
 
 #include "facet_samples.hpp"
+#include "gap_reading.hpp"
 #include "gap_search.hpp"
 #include "rpc/contact/clearance.hpp"
 #include "rpc/contact/law/foundation.hpp"
@@ -27,8 +28,6 @@ struct Density {
   static constexpr double in_plane = 4096, in_space = 16384;
   /// Parts of an edge of a facet, of sides with more facets than that.
   static constexpr int fewest_parts = 4;
-  /// On those sides facets are skipped whose distance from the foundation exceeds this multiple of the variation of penetration within them.
-  static constexpr double reach = 2;
   /// Parts of a side's faces in space in which branch and bound looks for contact between samples: some 1 microsecond each.
   static constexpr int searched = 1 << 15;
   /// Of a surface that is given at places of its own: samples for each of their distances, of a side at most, and parts of an edge at most.
@@ -121,126 +120,38 @@ struct SideSamples {
     return detail->clearance(places) <= moved;
   }
 
-  /// Whether a facet may reach into the foundation: its nodes tell, if what they show varies little, or the foundation does, if it can.
-  bool is_near(const LO f) const
+  /// An upper bound on e over a facet [m]; infinite where nothing is known of the gap between its nodes.
+  /// @param shape, triangle  of the facet
+  double most_possible(const LO f, const EvaluateShape &shape, const bool triangle) const
   {
-    if (const SurfaceDetail *const detail = detail_of(options)) {
-      const Obstacle &obstacle = options.obstacle;
-      Bounds places = Bounds::empty();
-      double moved = 0;
-      for (int a = 0; a < rows.nodes; ++a) {
-        Point x{}, u{};
-        std::copy_n(rows.place(f, a), rows.dim, x.begin());
-        std::copy_n(rows.displacement(f, a), rows.dim, u.begin());
-        places.add(difference(x, obstacle.point));
-        moved = std::max(moved, length(u));
-      }
-      // Between nodes of order 2 a facet may reach beyond their box by an eighth of it, and displacements may be larger in the same way.
-      for (int c = 0; c < rows.dim; ++c) {
-        const double beyond = (places.upper[c] - places.lower[c]) / 8;
-        places.lower[c] -= beyond;
-        places.upper[c] += beyond;
-      }
-      return detail->clearance(places) <= 25. / 16 * moved;
-    }
-    double most = rows.column(f, 0, FacetRows::excess), least = most;
-    for (int a = 1; a < rows.nodes; ++a) {
-      most = std::max(most, rows.column(f, a, FacetRows::excess));
-      least = std::min(least, rows.column(f, a, FacetRows::excess));
-    }
-    return most + Density::reach * (most - least) >= 0;
-  }
-};
-
-/// What reading the gap at the nodes alone leaves open, of a facet or of several.                                 (3.16a)
-struct Misread {
-  double energy = 0, force = 0, penetration = 0; // [J], [N], in 2D per m; the most [m]
-  double ends = 0; // half of the facet if its nodes bear and a sample does not [m^(dim-1)]
-};
-
-/// Of facets that bear a pressure and within which the gap is far from what its nodes show of it: it jumps, or has a kink.
-struct GapReading {
-  const ContactOptions &options;
-  const FacetRows &rows;
-  const std::vector<FacetShape> &fine, &coarse;
-  bool axisymmetric;
-  // Of the range of the gap at the nodes. Between nodes beside a jump it is off by a half or more, on a smooth slope by little.
-  static constexpr double off = 0.25;
-
-  double penetration_at_sample(const LO f, const FacetShape &shape, const FacetSample &sample) const
-  {
-    return penetration_at(sample, options) - rows.interpolated(f, shape, FacetRows::dent);
-  }
-
-  /// Whether samples are far from what the nodes show. NaN and infinity, where the obstacle is missed, are not.
-  bool is_off(const LO f) const
-  {
-    double least = std::numeric_limits<double>::infinity(), most = -least, furthest = 0;
+    constexpr double unknown = std::numeric_limits<double>::infinity();
+    if (!options.obstacle.exists())
+      return rows.dim == 3 && options.gap.bounds ? bound_on_excess(rows, f, shape, options, triangle) : unknown;
+    const Obstacle &obstacle = options.obstacle;
+    Bounds places = Bounds::empty();
+    double moved = 0;
     for (int a = 0; a < rows.nodes; ++a) {
-      least = std::min(least, rows.column(f, a, FacetRows::penetration));
-      most = std::max(most, rows.column(f, a, FacetRows::penetration));
-    }
-    for (const FacetShape &shape : coarse) {
-      const double v = penetration_at_sample(f, shape, sample_at(rows, f, shape, options, 0));
-      if (!std::isfinite(v)) return false;
-      furthest = std::max(furthest, std::abs(v - rows.interpolated(f, shape, FacetRows::penetration)));
-    }
-    return furthest > off * (most - least);
-  }
-
-  /// The foundation with a layer of the body in series.
-  Foundation law(const Point &x, const double dent, const double layer) const
-  {
-    const double hardening = options.hardening(x);
-    return {options.yield_stress(x) + (hardening > 0 ? hardening * std::max(dent, 0.) : 0), hardening,
-            layer + 1 / options.stiffness(x)};
-  }
-
-  /// @param modulus, of_surface  of the cell: lambda + 2 mu, and E/(1 - nu^2), by which a surface gives way [Pa]
-  Misread read(const LO f, const double modulus, const double of_surface) const
-  {
-    if (!is_off(f)) return {};
-    const double layer = rows.size(f) / modulus;
-    double energy[FacetShape::most_nodes], pressure[FacetShape::most_nodes];
-    double low = std::numeric_limits<double>::infinity(), high = 0;
-    for (int a = 0; a < rows.nodes; ++a) {
-      Point x{};
+      Point x{}, u{};
       std::copy_n(rows.place(f, a), rows.dim, x.begin());
-      const double p = rows.column(f, a, FacetRows::pressure);
-      const Foundation in_series = law(x, rows.column(f, a, FacetRows::dent), layer);
-      const double v = rows.column(f, a, FacetRows::penetration) + layer * p;
-      energy[a] = foundation_energy(v, in_series);
-      pressure[a] = pressure_at(v, in_series);
-      low = std::min(low, p);
-      high = std::max(high, p);
+      std::copy_n(rows.displacement(f, a), rows.dim, u.begin());
+      places.add(difference(x, obstacle.point));
+      moved = std::max(moved, length(u));
     }
-    const double moved = (high - low) * rows.size(f) / (2 * of_surface); // by pressures that jump half a facet further
-    Misread found;
-    double radii = 0;
-    for (const FacetShape &shape : fine) {
-      const FacetSample sample = sample_at(rows, f, shape, options, 0);
-      const double radius = axisymmetric ? sample.place[0] : 1;
-      const double dent = rows.interpolated(f, shape, FacetRows::dent);
-      const double v =
-          penetration_at_sample(f, shape, sample) + layer * rows.interpolated(f, shape, FacetRows::pressure);
-      if (!std::isfinite(v)) return {};
-      const Foundation in_series = law(sample.place, dent, layer);
-      const double p = pressure_at(v, in_series);
-      double off_energy = foundation_energy(v, in_series), off_force = p;
-      for (int a = 0; a < rows.nodes; ++a) {
-        off_energy -= shape.value[a] * energy[a];
-        off_force -= shape.value[a] * pressure[a];
-      }
-      found.energy += radius * std::abs(off_energy);
-      found.force += radius * std::abs(off_force);
-      found.penetration = std::max(found.penetration, dent + v - layer * p + moved);
-      if (low > 0 && !(p > 0)) found.ends = rows.area(f) / 2;
-      radii += radius;
+    // Between nodes of order 2 a facet may reach beyond their box by an eighth of it, and displacements may be larger in the same way.
+    Point middle = obstacle.point, half{};
+    for (int c = 0; c < rows.dim; ++c) {
+      const double beyond = (places.upper[c] - places.lower[c]) / 8;
+      places.lower[c] -= beyond;
+      places.upper[c] += beyond;
+      middle[c] += (places.lower[c] + places.upper[c]) / 2;
+      half[c] = (places.upper[c] - places.lower[c]) / 2;
     }
-    const double share = radii > 0 ? rows.area(f) / radii : 0;
-    found.energy *= share;
-    found.force *= share;
-    return found;
+    moved *= 25. / 16;
+    if (const SurfaceDetail *const detail = detail_of(options)) return moved - detail->clearance(places);
+    // The distance from the foundation changes by no more than the way.
+    const auto into = direction_into(obstacle, middle);
+    const auto distance = into ? distance_along(obstacle, middle, *into) : std::nullopt;
+    return distance ? moved + length(half) - *distance : unknown;
   }
 };
 
@@ -301,11 +212,10 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
   const mesh::Element facet = mesh.element.facet();
   const FacetRows rows = facet_rows(d, side, points, result, k, u);
   std::vector<LO> owned;
-  GO bearing_nothing = 0, partly_open = 0;
+  GO partly_open = 0;
   for (LO f = 0; f < rows.num_facets(); ++f) {
     if (rows.cell(f) >= mesh.num_owned_cells) continue;
     owned.push_back(f);
-    bearing_nothing += rows.bears_nothing(f) ? 1 : 0;
     partly_open += rows.is_partly_open(f) ? 1 : 0;
   }
   const GO num_facets = sum_all(mesh.comm(), GO(owned.size()));
@@ -324,41 +234,47 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
   const SideSamples samples{options, rows, fine, d.axisymmetric()}, few{options, rows, coarse, d.axisymmetric()},
       edges{options, rows, at_edges, d.axisymmetric()};
   const bool searches = facet.dim == 2 && !options.obstacle.exists() && options.gap.bounds;
-  const GO all_bearing_nothing = std::max(GO(1), sum_all(mesh.comm(), bearing_nothing));
-  // In space facets whose nodes are far need no samples: bounds find narrow pits there, and of obstacles nodes show at least that a normal misses them.
-  const bool sieves = parts == Density::fewest_parts || detail != nullptr ||
-                      (facet.dim == 2 && (searches || options.obstacle.exists()));
-  const GapReading reading{options, rows, shares ? coarse : fine, coarse, d.axisymmetric()};
-  const int most_searched = searches ? static_cast<int>(Density::searched / all_bearing_nothing) : 0; // of each facet
   const EvaluateShape shape = shape_of(facet);
+  const bool triangle = facet.shape == mesh::Shape::simplex;
+  // Facets that cannot reach the foundation need no samples.
+  std::vector<double> possible;
+  GO to_search = 0;
+  for (const LO f : owned) {
+    possible.push_back(samples.most_possible(f, shape, triangle));
+    to_search += searches && possible.back() >= 0 && rows.bears_nothing(f) ? 1 : 0;
+  }
+  const GapReading reading{options, rows, shares ? coarse : fine, coarse, d.axisymmetric()};
+  const int most_searched =
+      static_cast<int>(Density::searched / std::max(GO(1), sum_all(mesh.comm(), to_search))); // of each facet
   const auto block = to_host(mesh.block);
   const auto lame = to_host(fem::lame_table(d, materials));
   std::vector<double> squared(rows.num_facets(), 0.), width(rows.num_facets(), 0.);
   double sum = 0;
-  for (const LO f : owned) {
+  for (std::size_t n = 0; n < owned.size(); ++n) {
+    const LO f = owned[n];
     const double lambda = lame(block(rows.cell(f)), 0), mu = lame(block(rows.cell(f)), 1), modulus = lambda + 2 * mu;
-    const bool unseen = rows.bears_nothing(f);
+    const bool unseen = rows.bears_nothing(f), partly = rows.is_partly_open(f);
     Found found;
-    if (!sieves || samples.is_near(f)) {
-      const bool all_touches = shares && !unseen && !rows.is_partly_open(f);
+    if (possible[n] >= 0) {
+      const bool all_touches = shares && !unseen && !partly;
       found = (unseen ? samples : all_touches ? few : edges).look(f, modulus, least);
-    } else if (-rows.most_excess(f) - rows.size(f) <
-               open_by) { // if the gap changes along the side by no more than the way
-      found = few.look(f, modulus, least);
+      if (unseen && searches && !(found.deepest > 0))
+        if (const auto hidden = find_hidden_part(rows, f, shape, options, triangle, least, most_searched))
+          found = found_in(*hidden, options, modulus);
+    } else if (possible[n] > -open_by) {
+      found = (facet.dim == 1 && detail == nullptr ? samples : few).look(f, modulus, least);
     }
-    if (unseen && most_searched > 0 && !(found.deepest > 0))
-      if (const auto hidden =
-              find_hidden_part(rows, f, shape, options, facet.shape == mesh::Shape::simplex, least, most_searched))
-        found = found_in(*hidden, options, modulus);
     const PlaceBetweenNodes place{found.deepest, found.place, k, found.width, rows.size(f)};
     if (place.depth > mine.deepest.depth) mine.deepest = place;
     mine.smallest_gap = std::min(mine.smallest_gap, -found.largest_excess);
-    if (!unseen && (found.deepest > 0 || rows.is_partly_open(f))) {
+    if (!unseen && (found.deepest > 0 || partly) && reading.is_off(f)) {
       const Misread misread = reading.read(f, modulus, 4 * mu * (lambda + mu) / modulus);
       mine.misread_energy += misread.energy;
       mine.misread_force += misread.force;
       mine.misread_penetration = std::max(mine.misread_penetration, misread.penetration);
       mine.misread_ends += misread.ends;
+    } else if (!unseen && facet.order == 1 && detail == nullptr) {
+      mine.interpolation_work += reading.work_of_interpolation(f);
     }
     if (!unseen) continue;
     sum += squared[f] = found.squared;
@@ -405,7 +321,8 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
     else
       squared = look_at_side(d, *sides[k], options[k], points, materials, u, static_cast<int>(k), least, open_by,
                              result, mine);
-    for (const auto sum : {&BetweenNodes::misread_energy, &BetweenNodes::misread_force, &BetweenNodes::misread_ends})
+    for (const auto sum : {&BetweenNodes::misread_energy, &BetweenNodes::misread_force, &BetweenNodes::misread_ends,
+                           &BetweenNodes::interpolation_work})
       result.between.*sum += sum_all(comm, mine.*sum);
     result.between.misread_penetration =
         std::max(result.between.misread_penetration, max_all(comm, mine.misread_penetration));

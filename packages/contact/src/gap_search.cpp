@@ -34,9 +34,9 @@ public:
 
   std::optional<HiddenPart> run(const double least, const int most_parts)
   {
-    const double edge = triangle_ ? 1 : 2;
+    const double edge = length_of_edge();
     std::priority_queue<FacePart> parts;
-    parts.push(bounded({triangle_ ? 0. : -1, triangle_ ? 0. : -1}, edge));
+    parts.push(whole());
     double deepest = least, at[2] = {};
     for (int looked = 0; looked < most_parts && !parts.empty() && parts.top().bound > deepest; ++looked) {
       const FacePart part = parts.top();
@@ -58,7 +58,15 @@ public:
     return hidden;
   }
 
+  /// With the bound on e over the face.
+  FacePart whole() const
+  {
+    const double corner = triangle_ ? 0 : -1;
+    return bounded({corner, corner}, length_of_edge());
+  }
+
 private:
+  double length_of_edge() const { return triangle_ ? 1 : 2; } // of the reference cell
   FacetSample sample(const double *const X) const
   {
     FacetShape shape;
@@ -109,7 +117,7 @@ private:
           box.high[k] = std::max(box.high[k], at.place[k]);
         }
       }
-    const double share = size / (triangle_ ? 1 : 2), curved = 4 * share * share;
+    const double share = size / length_of_edge(), curved = 4 * share * share;
     for (int k = 0; k < 3; ++k) {
       box.low[k] -= curved * bend_;
       box.high[k] += curved * bend_;
@@ -161,6 +169,12 @@ std::optional<HiddenPart> find_hidden_part(const FacetRows &rows, const LO f, co
                                            const int most_parts)
 {
   return Search(rows, f, shape, options, triangle).run(least, most_parts);
+}
+
+double bound_on_excess(const FacetRows &rows, const LO f, const EvaluateShape &shape, const ContactOptions &options,
+                       const bool triangle)
+{
+  return Search(rows, f, shape, options, triangle).whole().bound;
 }
 
 } // namespace rpc::contact

@@ -23,4 +23,8 @@ struct HiddenPart {
 std::optional<HiddenPart> find_hidden_part(const FacetRows &rows, LO f, const EvaluateShape &shape,
                                            const ContactOptions &options, bool triangle, double least, int most_parts);
 
+/// An upper bound on e over a face in space in front of a foundation that is given as an expression with bounds [m].
+double bound_on_excess(const FacetRows &rows, LO f, const EvaluateShape &shape, const ContactOptions &options,
+                       bool triangle);
+
 } // namespace rpc::contact

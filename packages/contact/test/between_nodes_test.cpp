@@ -27,7 +27,11 @@ struct Looked {
   ContactResult result;
 
   Looked(const mesh::Element &element, const contact::ContactOptions &side, const double pressure = 0)
-      : d(body(element)), options{side}, points(nodes_of(d, options)), u(rcp(new Vector(d.owned_dofs)))
+      : Looked(body(element), side, pressure)
+  {
+  }
+  Looked(fem::Discretization of, const contact::ContactOptions &side, const double pressure = 0)
+      : d(std::move(of)), options{side}, points(nodes_of(d, options)), u(rcp(new Vector(d.owned_dofs)))
   {
     contact::ContactState state;
     state.displacement = u;
@@ -83,6 +87,38 @@ TEST(BetweenNodes, SmallestGapIsThatOfSamplesBetweenTheNodesToo)
   face.obstacle = {contact::Sphere{3}, {0.75, 0.75, -3.001}};
   const Looked looked({3, 1}, face);
   EXPECT_NEAR(contact::smallest_gap(looked.d.mesh->comm(), looked.points, looked.result), 0.001, 1e-6);
+}
+
+/// A strip or a plate of 1 m with so many cells along its edge.
+fem::Discretization many_facets(const int dim, const int cells)
+{
+  mesh::BoxOptions box{{0, 0}, {1, 0.1}, {cells, 1}, {2, 1}};
+  if (dim == 3) box = {{0, 0, 0}, {1, 1, 0.1}, {cells, cells, 1}, {3, 1}};
+  return fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())));
+}
+
+TEST(BetweenNodes, FacetsWhoseNodesAreAlikeAreLookedAtHoweverManyThereAre)
+{
+  // Nodes tell nothing of what lies below the middle of one facet.
+  const double h = 1. / 1200, depth = 1e-4;
+  auto strip = touching("bottom");
+  strip.gap = ScalarField("bump", [=](const Point &x) { return std::abs(x[0] - 700.5 * h) < h / 3 ? -depth : 1e-3; });
+  EXPECT_NEAR(Looked(many_facets(2, 1200), strip).result.between.unseen.depth, depth, 1e-12);
+  auto plate = touching("back");
+  plate.normal = contact::Normal::foundation;
+  plate.obstacle = {contact::Sphere{0.004}, {20.5 / 40, 10.5 / 40, depth - 0.004}};
+  EXPECT_NEAR(Looked(many_facets(3, 40), plate).result.between.unseen.depth, depth, 1e-12);
+}
+
+TEST(BetweenNodes, OfASmoothGapTheWorkOfThePressureOverItsInterpolantsErrorIsTold)
+{
+  // The interpolant of c x^2 on facets of length h is too large by c h^2/6 in the mean; the side is 2 m long.
+  const double c = 0.01, h = 0.5, p = 10;
+  auto side = touching("bottom");
+  side.gap = ScalarField("parabola", [=](const Point &x) { return c * x[0] * x[0]; });
+  EXPECT_NEAR(Looked({2, 1}, side, p).result.between.interpolation_work / (-p * 2 * c * h * h / 6), 1, 0.01);
+  EXPECT_EQ(Looked({2, 2}, side, p).result.between.interpolation_work, 0);
+  EXPECT_EQ(Looked({2, 1}, side).result.between.interpolation_work, 0); // nothing touches
 }
 
 TEST(BetweenNodes, EnergyIsThatOfALayerAsDeepAsThePartIsWide)

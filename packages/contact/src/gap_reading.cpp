@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gap_reading.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rpc::contact
+{
+
+double GapReading::penetration_at_sample(const LO f, const FacetShape &shape, const FacetSample &sample) const
+{
+  return penetration_at(sample, options) - rows.interpolated(f, shape, FacetRows::dent);
+}
+
+bool GapReading::is_off(const LO f) const
+{
+  double least = std::numeric_limits<double>::infinity(), most = -least, furthest = 0;
+  for (int a = 0; a < rows.nodes; ++a) {
+    least = std::min(least, rows.column(f, a, FacetRows::penetration));
+    most = std::max(most, rows.column(f, a, FacetRows::penetration));
+  }
+  for (const FacetShape &shape : coarse) {
+    const double v = penetration_at_sample(f, shape, sample_at(rows, f, shape, options, 0));
+    if (!std::isfinite(v)) return false;
+    furthest = std::max(furthest, std::abs(v - rows.interpolated(f, shape, FacetRows::penetration)));
+  }
+  return furthest > off * (most - least);
+}
+
+double GapReading::work_of_interpolation(const LO f) const
+{
+  double work = 0, radii = 0;
+  for (const FacetShape &shape : fine) {
+    const FacetSample sample = sample_at(rows, f, shape, options, 0);
+    const double radius = axisymmetric ? sample.place[0] : 1;
+    const double off = rows.interpolated(f, shape, FacetRows::penetration) - penetration_at_sample(f, shape, sample);
+    if (!std::isfinite(off)) return 0; // the obstacle is missed
+    work += radius * rows.interpolated(f, shape, FacetRows::pressure) * off;
+    radii += radius;
+  }
+  return radii > 0 ? work * rows.area(f) / radii : 0;
+}
+
+Foundation GapReading::law(const Point &x, const double dent, const double layer) const
+{
+  const double hardening = options.hardening(x);
+  return {options.yield_stress(x) + (hardening > 0 ? hardening * std::max(dent, 0.) : 0), hardening,
+          layer + 1 / options.stiffness(x)};
+}
+
+Misread GapReading::read(const LO f, const double modulus, const double of_surface) const
+{
+  const double layer = rows.size(f) / modulus;
+  double energy[FacetShape::most_nodes], pressure[FacetShape::most_nodes];
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  for (int a = 0; a < rows.nodes; ++a) {
+    Point x{};
+    std::copy_n(rows.place(f, a), rows.dim, x.begin());
+    const double p = rows.column(f, a, FacetRows::pressure);
+    const Foundation in_series = law(x, rows.column(f, a, FacetRows::dent), layer);
+    const double v = rows.column(f, a, FacetRows::penetration) + layer * p;
+    energy[a] = foundation_energy(v, in_series);
+    pressure[a] = pressure_at(v, in_series);
+    low = std::min(low, p);
+    high = std::max(high, p);
+  }
+  const double moved = (high - low) * rows.size(f) / (2 * of_surface); // by pressures that jump half a facet further
+  Misread found;
+  double radii = 0;
+  for (const FacetShape &shape : fine) {
+    const FacetSample sample = sample_at(rows, f, shape, options, 0);
+    const double radius = axisymmetric ? sample.place[0] : 1;
+    const double dent = rows.interpolated(f, shape, FacetRows::dent);
+    const double v = penetration_at_sample(f, shape, sample) + layer * rows.interpolated(f, shape, FacetRows::pressure);
+    if (!std::isfinite(v)) return {};
+    const Foundation in_series = law(sample.place, dent, layer);
+    const double p = pressure_at(v, in_series);
+    double off_energy = foundation_energy(v, in_series), off_force = p;
+    for (int a = 0; a < rows.nodes; ++a) {
+      off_energy -= shape.value[a] * energy[a];
+      off_force -= shape.value[a] * pressure[a];
+    }
+    found.energy += radius * std::abs(off_energy);
+    found.force += radius * std::abs(off_force);
+    found.penetration = std::max(found.penetration, dent + v - layer * p + moved);
+    if (low > 0 && !(p > 0)) found.ends = rows.area(f) / 2;
+    radii += radius;
+  }
+  const double share = radii > 0 ? rows.area(f) / radii : 0;
+  found.energy *= share;
+  found.force *= share;
+  return found;
+}
+
+} // namespace rpc::contact
