@@ -130,19 +130,22 @@ void add_what_a_mesh_leaves(const Cycle &last, const std::vector<double> &eta, O
                squared = caution * last.estimate * last.estimate;
   errors.energy = std::max(errors.energy, energy_left(last));
   const double jumped = left_by_jumps(last).force;
-  errors.contact_force = std::max(errors.contact_force, squared * force + jumped);
+  // No force moves further than the body: where others cancel in their sum, this one does little of the work.
+  const double far = last.max_displacement, at_work = far > 0 ? std::max(force, last.energy_norm_squared / far) : force;
+  errors.contact_force = std::max(errors.contact_force, squared * at_work + jumped);
   double largest = force;
   for (const auto &reaction : last.reactions) largest = std::max(largest, length(reaction));
-  for (double &bar : errors.reactions) bar = std::max(bar, squared * largest + jumped);
+  for (double &bar : errors.reactions) bar = std::max(bar, squared * std::max(largest, at_work) + jumped);
   change_all(errors.motions, left_of_motions(last, squared * largest + jumped, squared),
              [](const double error, const double left) { return std::max(error, left); });
   // The largest penetration may be that of a corner; what remains of it where the body has drawn back is as uncertain as the dents.
   const double deepest = std::max(last.contact.max_penetration, last.contact.max_dent);
-  errors.max_penetration = std::max(errors.max_penetration, last.estimate * deepest);
+  errors.max_penetration = std::max({errors.max_penetration, last.estimate * deepest, last.peak.rounded_depth});
   if (last.contact.max_penetration > 0) // else nothing gives way
     errors.max_penetration = std::max(errors.max_penetration, last.misread_penetration - last.contact.max_penetration);
   if (hardly_finer(eta)) errors.max_pressure = std::max(errors.max_pressure, last.estimate * last.contact.max_pressure);
-  errors.max_pressure = last.peak.at_bound ? 0 : std::max(errors.max_pressure, last.recovered_max_pressure);
+  errors.max_pressure =
+      last.peak.at_bound ? 0 : std::max({errors.max_pressure, last.recovered_max_pressure, last.peak.rounded});
   errors.contact_pressure = std::max(errors.contact_pressure, last.recovered_pressure);
   // Sums of weights are rounded.
   errors.contact_length = std::max({errors.contact_length, last.contact_ends, 1e-12 * last.contact.contact_length});
@@ -304,8 +307,9 @@ LeftOpen left_by_jumps(const Cycle &cycle)
 {
   const double moved = moved_by(cycle, force_at_work(cycle.contact.force, cycle.reactions));
   const LeftOpen misread = left_by_misreading(cycle);
-  return {cycle.jumped_force + force_of(cycle.jumped_energy, moved) + misread.force,
-          cycle.jumped_energy + cycle.jumped_force * moved_by(cycle, length(cycle.contact.force)) + misread.energy};
+  const double energy = cycle.jumped_energy + cycle.interpolated;
+  return {cycle.jumped_force + force_of(energy, moved) + misread.force,
+          energy + cycle.jumped_force * moved_by(cycle, length(cycle.contact.force)) + misread.energy};
 }
 
 double energy_left(const Cycle &cycle)

@@ -46,7 +46,8 @@ EarlierSteps earlier_steps(const Task &task, const Solution &s)
   for (const analysis::StepRecord &step : s.history) {
     if (!step.converged || step.time > s.time) continue;
     const double force = force_at_work(step.contact.force, step.reactions);
-    if (force > 0) earlier.moved_by = std::max(earlier.moved_by, 2 * step.energies.strain / force);
+    if (force > 0 && step.body.displacement > 0)
+      earlier.moved_by = std::max(earlier.moved_by, std::min(2 * step.energies.strain / force, step.body.displacement));
     if (step.time < s.time && step.contact.max_dent > 0) earlier.matter = true;
   }
   return earlier;

@@ -115,6 +115,7 @@ Cycle cycle_of(const Solution &s, const double seconds)
   cycle.misread_force = s.estimate->misread_force;
   cycle.misread_energy = s.estimate->misread_energy;
   cycle.misread_penetration = s.estimate->misread_penetration;
+  cycle.interpolated = s.estimate->interpolated;
   cycle.misses_contact = s.estimate->misses_contact();
   cycle.smallest_gap = s.smallest_gap;
   cycle.max_displacement = s.body.displacement;

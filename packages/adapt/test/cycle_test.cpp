@@ -72,6 +72,35 @@ TEST(ErrorBars, CountWhatReadingTheGapAtNodesLeavesOpen)
   EXPECT_NEAR(errors.max_penetration, 0.05, 1e-15); // samples between the nodes lie so much deeper
 }
 
+TEST(ErrorBars, CountTheInterpolantOfASmoothGap)
+{
+  std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10, 30)};
+  const auto before = observed_errors(cycles);
+  cycles.back().interpolated = 0.01; // of which the load, moved by 2 J / 10 N, makes 0.1 N
+  const auto errors = observed_errors(cycles);
+  EXPECT_NEAR(errors.energy, before.energy + 0.01, 1e-15);
+  EXPECT_NEAR(errors.contact_force, before.contact_force + 0.1, 1e-15);
+}
+
+TEST(ErrorBars, CountWhatFacetsLeaveOfAKinkThatTheFoundationRounds)
+{
+  std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10, 30)};
+  for (Cycle &cycle : cycles) cycle.contact.max_penetration = cycle.contact.max_dent = 0.1;
+  cycles.back().peak.rounded = 2;
+  cycles.back().peak.rounded_depth = 0.03;
+  const auto errors = observed_errors(cycles);
+  EXPECT_EQ(errors.max_pressure, 2);
+  EXPECT_EQ(errors.max_penetration, 0.03);
+}
+
+TEST(ErrorBars, OfForcesThatDoLittleOfTheWorkGoByHowFarTheBodyMoves)
+{
+  // 2 J of strain energy, of which 10 N over at most 0.01 m can have done little: others cancel in their sum.
+  std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10, 30)};
+  for (Cycle &cycle : cycles) cycle.max_displacement = 0.01;
+  EXPECT_NEAR(observed_errors(cycles).contact_force, 2 * 0.02 * 0.02 * 2 / 0.01, 1e-12);
+}
+
 TEST(ErrorBars, OfAMeshThatMissesContactAreNone)
 {
   std::vector<Cycle> cycles = {mesh(0.9, 1, 3), mesh(0.8, 1, 3)};

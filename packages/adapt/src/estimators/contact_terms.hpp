@@ -100,6 +100,23 @@ struct ContactTerms {
     return contact::resting_penetration(lame(of, 0) + 2 * lame(of, 1), law_at(f, a)) >= size(f);
   }
 
+  /// By how much more the foundation gives way for each pressure, at a node that yields or does not [m/Pa]; infinite where it yields at once.
+  KOKKOS_FUNCTION double softness(const LO f, const std::size_t a, const bool yields) const
+  {
+    constexpr double rigid = 1e200; // a penalty without give
+    const contact::State state = yields ? contact::State::yielding : contact::State::closed;
+    return 1 / contact::branch_stiffness(state, rigid, law_at(f, a));
+  }
+
+  /// How much of the pressure that a kink of the gap adds over a factor e of the distance is open where the foundation gives way: it ends the
+  /// growth at the length l over which the body is as soft, and facets are shorter or not.                  (10.8b)
+  KOKKOS_FUNCTION double unresolved(const LO f, const std::size_t a, const bool yields) const
+  {
+    const int of = block(cell(f));
+    const double l = softness(f, a, yields) * (lame(of, 0) + 2 * lame(of, 1)), share = size(f) / l;
+    return share < 1 ? share * math::sqrt(share) : 1; // (h/l)^2 (1 + log(l/h)) is at most 1.21 of it
+  }
+
   /// E/(1 - nu^2), in plane stress E: of what the surface gives way under a pressure [Pa].
   KOKKOS_FUNCTION double surface_modulus(const LO f) const
   {

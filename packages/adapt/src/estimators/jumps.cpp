@@ -107,23 +107,36 @@ SingularNodes singular_nodes(const fem::Discretization &d, const ContactTerms &t
   SingularNodes found;
   Kokkos::parallel_reduce(
       "rpc::adapt::singular_nodes", facets,
-      KOKKOS_LAMBDA(const LO f, double &largest, double &edges) {
+      KOKKOS_LAMBDA(const LO f, double &largest, double &edges, double &rounded, double &rounded_depth) {
         const double modulus = terms.surface_modulus(f);
         for (int a = 0; a < 2; ++a) {
           const LO node = terms.facets(f, a);
           const double p = node < num_owned ? terms.field(node, int(pressure)) : 0;
-          if (!(p > 0 && p >= high * terms.highest) || p >= contact::yield_limit(terms.law_at(f, a))) continue;
+          if (!(p > 0 && p >= high * terms.highest)) continue;
+          const contact::Foundation law = terms.law_at(f, a);
+          const bool yields = p >= contact::yield_limit(law);
           const bool at_end = slopes.after(node) < 0 || slopes.before(node) < 0;
-          if (at_end && terms.friction && !(axisymmetric && coords(node, 0) == 0)) {
+          if (at_end && terms.friction && !yields && !(axisymmetric && coords(node, 0) == 0)) {
             double square = 0; // 0 by symmetry where the end lies on a plane of symmetry
             for (int k = traction; k < traction + 3; ++k) square += terms.field(node, k) * terms.field(node, k);
             if (math::sqrt(square) > Jumps::seen * terms.highest) edges += 1;
           }
-          if (terms.on_springs(f, a)) continue;
           // A curved gap has as much at the neighbours: what they have too is no kink.
           double beside = 0;
           if (slopes.after(node) >= 0) beside = math::fmax(beside, seen(slopes.after(node), int(kink)));
           if (slopes.before(node) >= 0) beside = math::fmax(beside, seen(slopes.before(node), int(kink)));
+          if (yields || terms.on_springs(f, a)) {
+            // Next to an open node the gap jumps, or contact ends.
+            const LO after = slopes.after(node), before = slopes.before(node);
+            if ((after >= 0 && !(terms.field(after, int(pressure)) > 0)) ||
+                (before >= 0 && !(terms.field(before, int(pressure)) > 0)))
+              continue;
+            const double off = modulus * (seen(node, int(kink)) - beside) / twice_pi * terms.unresolved(f, a, yields);
+            if (!(off > 0)) continue;
+            rounded = math::fmax(rounded, off);
+            rounded_depth = math::fmax(rounded_depth, off * terms.softness(f, a, yields));
+            continue;
+          }
           // From before a facet to behind it the slope grows by as much as at a kink within it, wherever that lies; a curved gap shows in
           // the curvature of the next facets of order 2, or at the nodes beyond one of order 1.
           const LO start = terms.facets(f, 0), end = terms.facets(f, 1);
@@ -143,8 +156,9 @@ SingularNodes singular_nodes(const fem::Discretization &d, const ContactTerms &t
           largest = math::fmax(largest, modulus * grows / (twice_pi * terms.highest));
         }
       },
-      Kokkos::Max<double>(found.kink), found.edges);
-  found.kink = math::fmax(0., found.kink);
+      Kokkos::Max<double>(found.kink), found.edges, Kokkos::Max<double>(found.rounded),
+      Kokkos::Max<double>(found.rounded_depth));
+  for (double *const most : {&found.kink, &found.rounded, &found.rounded_depth}) *most = math::fmax(0., *most);
   return found;
 }
 

@@ -83,11 +83,12 @@ struct Jumps {
   }
 };
 
-/// What makes the pressure singular at nodes of a plane side, or one of revolution, that do not yield and have at least half of the largest
-/// pressure; 0 in space.                                                                                      (10.8a)
+/// What makes the pressure singular, or nearly so, at nodes of a plane side, or one of revolution, that have at least half of the largest
+/// pressure; 0 in space.                                                                              (10.8a), (10.8b)
 struct SingularNodes {
   double kink =
       0; ///< how much the pressure grows while the distance to a kink of the gap falls to 1/e of itself, over the largest one: the most
+  double rounded = 0, rounded_depth = 0; ///< see PressurePeak [Pa], [m]
   double edges = 0; ///< number of those at an end of the side, but for the axis, that bear a traction along it
 };
 SingularNodes singular_nodes(const fem::Discretization &d, const ContactTerms &terms);

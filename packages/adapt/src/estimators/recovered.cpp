@@ -233,7 +233,8 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
   estimate.peak.at_bound = highest >= (1 - 1e-12) * bounds.max_val;
   estimate.peak.lowest_bound = bounds.min_val;
   constexpr int num_sums = 14;
-  double sums[num_sums] = {}, peak = 0, spread = 0, drop = 0, kink = 0; // Kokkos' maximum over no facets is -DBL_MAX
+  double sums[num_sums] = {}, peak = 0, spread = 0, drop = 0, kink = 0, rounded = 0,
+         rounded_depth = 0; // Kokkos' maximum over no facets is -DBL_MAX
   Kokkos::parallel_reduce(
       "rpc::adapt::recovery", device_range(mesh.num_owned_cells),
       KOKKOS_LAMBDA(const LO cell, double &sum) { sum += squared(cell); }, sums[0]);
@@ -273,6 +274,8 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
     drop = std::max(drop, drop_of_side);
     const SingularNodes singular = singular_nodes(d, terms);
     kink = std::max(kink, singular.kink);
+    rounded = std::max(rounded, singular.rounded);
+    rounded_depth = std::max(rounded_depth, singular.rounded_depth);
     of_side[11] = singular.edges;
     Kokkos::parallel_reduce("rpc::adapt::jumps", facets, Jumps{terms}, of_side[8], of_side[9], of_side[10]);
     if (!estimate.peak.at_bound) {
@@ -303,10 +306,13 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
   estimate.peak.friction_jump = all[11] > 0;
   estimate.peak.friction_edge = all[12] > 0;
   estimate.peak.kink = max_all(mesh.comm(), kink);
+  estimate.peak.rounded = max_all(mesh.comm(), rounded);
+  estimate.peak.rounded_depth = max_all(mesh.comm(), rounded_depth);
   estimate.jumped_force = all[9];
   estimate.jumped_energy = all[10];
   estimate.misread_force = unseen.misread_force;
   estimate.misread_energy = unseen.misread_energy;
+  estimate.interpolated = std::abs(unseen.interpolation_work);
   estimate.misread_penetration = std::max(unseen.misread_penetration, of.result.deepest_on_axis); // (3.5b)
   return estimate;
 }

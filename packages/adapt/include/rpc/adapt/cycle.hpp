@@ -42,6 +42,7 @@ struct Cycle {
   double contact_ends = 0;                    ///< of facets that are partly open, half of them [m]
   double jumped_force = 0, jumped_energy = 0; ///< see ErrorEstimate [N], [J], in 2D per m
   double misread_force = 0, misread_energy = 0, misread_penetration = 0; ///< the same, and [m]
+  double interpolated = 0;                                               ///< the same [J], in 2D per m
   /// That is left [m]; < 0 where a side lies in the foundation between its nodes.
   double smallest_gap = std::numeric_limits<double>::infinity();
   double max_displacement = 0; ///< [m]
@@ -98,7 +99,8 @@ struct LeftOpen {
 /// By reading a gap at nodes that jumps or has a kink between them.                                  doc/theory.md (3.16a)
 LeftOpen left_by_misreading(const Cycle &cycle);
 
-/// By that and by other data of the contact law that jump between nodes.                             doc/theory.md (10.7b)
+/// By that, by a smooth gap's interpolant, and by other data of the contact law that jump between nodes.
+/// doc/theory.md (3.16b), (10.7b)
 LeftOpen left_by_jumps(const Cycle &cycle);
 
 /// What one mesh by itself leaves open of J: no bar is smaller [J], in 2D per m.                     doc/theory.md (10.7a), (10.7b)

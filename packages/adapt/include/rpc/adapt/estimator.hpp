@@ -27,6 +27,8 @@ struct PressurePeak {
   bool friction_edge = false; ///< contact with friction reaches an end of the side, where the pressure may be singular
   double kink =
       0; ///< of the gap in contact: how much the pressure grows while the distance to it falls to 1/e, over the largest pressure
+  /// What facets leave open of the pressure, and of the penetration, at a kink of the gap where the foundation gives way [Pa], [m]. (10.8b)
+  double rounded = 0, rounded_depth = 0;
 
   /// Why there is no bar; empty if there is one.
   std::string unknown() const;
@@ -59,6 +61,8 @@ struct ErrorEstimate {
   double jumped_force = 0;  ///< tractions that jump, over half of the facets on which they do [N], in 2D per m
   double jumped_energy = 0; ///< what contact that ends half a facet further in would release [J], in 2D per m
   double misread_force = 0, misread_energy = 0, misread_penetration = 0; ///< see contact::BetweenNodes, (3.5b)
+  double interpolated =
+      0; ///< |contact::BetweenNodes::interpolation_work| [J], in 2D per m                       (3.16b)
 
   double part(const std::string &key) const; ///< [J], in 2D per m
   double total() const;                      ///< eta^2
