@@ -157,6 +157,7 @@ TEST(RigidBodyModes, AreZeroAtNoNode)
     box.lower.assign(dim, 0.);
     box.upper.assign(dim, 1.);
     box.cells.assign(dim, 2);
+    box.element = {dim, 1};
     const auto d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, world())), {});
     const auto modes = fem::rigid_body_modes(d);
     const auto values = modes->getLocalViewHost(Tpetra::Access::ReadOnly);
