@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Random bodies that a force presses, against the same bodies that a displacement presses.
 
-    python3 forces.py --rpc=build/rpc [--moved=side] [--springs=1] [--bars=1] [--seed=1] [--scenes=50] [--only=K] [--jobs=2] [--keep=DIR]
+    python3 forces.py --rpc=build/rpc [--moved=side] [--springs=1] [--histories=RANKS] [--bars=1] [--seed=1] [--scenes=50] [--only=K] [--jobs=2] [--keep=DIR]
 
 Scene K comes from the seed and K alone: a box in the plane, of revolution or in space, whose top is held rigid, on an obstacle or a foundation with a
 gap, rigid or yielding, hardening or on springs, some with friction, some in load steps. The top is first moved by a displacement; then the force
 that this took, of each step, moves it. With --moved=obstacle the body is held, and an obstacle of a random shape is moved; with --springs=1 such an obstacle
-lies on a spring, which bears a part of the force. Told are failures: the displacement that comes back differs by more than 1e-10 of the given one, or a run
+lies on a spring, which bears a part of the force. With --histories=RANKS all scenes have load steps, and the run by force is done again: in two parts,
+with a restart between them, which must give the same digits, and on 2 to RANKS ranks, which must agree to 1e-10. Told are failures: the displacement that comes back differs by more than 1e-10 of the given one, or a run
 does not end as it should; where the foundation carries no more than the given force, it must be refused with exit code 5. Where all that touches yields, and does not harden, a force does not determine the displacement:
 such scenes must end, and their displacements are not compared. Told are the Newton steps of the two ways. The exit code is 1 if a scene failed, or the median of the ratio of Newton steps is above 1.2, of obstacles 1.6.
 
@@ -32,6 +33,7 @@ NO_SOLUTION = 5
 FINER, MOST_DOFS, KNOWN, HELD = 5, 40000, 0.5, 0.95  # bars: of references the target and dofs; what counts as known; how many must hold
 NOTHING = 1e-9  # of the modulus times the displacement: forces that are rounding
 TIGHT = 1e-11  # residuals: the two ways are to agree to more digits than a run has by default
+TIMES, PATH = [0.5, 1.0, 1.5, 2.0], "*(t < 1 ? t : t < 1.5 ? 1 - 0.3*(t - 1) : 0.85 + 0.6*(t - 1.5))"
 KINDS = ["plane strain", "plane stress", "axisymmetric", "space", "space"]
 
 
@@ -83,8 +85,8 @@ def scene(seed, number):
     times = []
     path = f"{-depth!r}"
     if rng.random() < 0.35:
-        times = [0.5, 1.0, 1.5, 2.0]
-        path = f"{-depth!r}*(t < 1 ? t : t < 1.5 ? 1 - 0.3*(t - 1) : 0.85 + 0.6*(t - 1.5))"
+        times = TIMES
+        path += PATH
         deck["Steps"] = {"Times": times}
     deck["Dirichlet"] = {"top": {**held, "Y": path}}
     if kind != "axisymmetric" and "X" not in held:
@@ -117,9 +119,13 @@ def shape(rng, kind, width, depth, dim):
     return "Point", place(0.0), {"Type": of, "Normal": up, "Radius": half, "Edge Radius": half * rng.uniform(0.5, 1)}
 
 
-def with_tool(seed, number):
-    """The same body, held at its top, on an obstacle that moves up: (deck, times, path, direction of the force)"""
+def with_tool(seed, number, histories=False):
+    """The same body, held at its top, on an obstacle that moves up: (deck, times, path, name of its point)"""
     deck, times = scene(seed, number)
+    if histories and not times:
+        times = TIMES
+        deck["Dirichlet"]["top"]["Y"] += PATH
+        deck["Steps"] = {"Times": times}
     rng = random.Random(f"tools {seed} {number}")
     kind, dim = deck.get("Kinematics", "space"), len(deck["Mesh"]["Upper"])
     path = deck["Dirichlet"]["top"]["Y"].replace("-", "", 1)
@@ -145,11 +151,11 @@ def eval_at(path, t):
     return float(factor) * along
 
 
-def run(rpc, deck, folder, name):
+def run(rpc, deck, folder, name, *arguments, launch=()):
     """(exit code, summary or None, rows of the history, last words)"""
     path = folder / f"{name}.yaml"
     path.write_text(f"{name}:\n" + trials.written(deck))
-    result = subprocess.run([rpc, f"--input={path}", f"--output={folder}"], capture_output=True, text=True, errors="replace", check=False,
+    result = subprocess.run([*launch, rpc, f"--input={path}", f"--output={folder}", *arguments], capture_output=True, text=True, errors="replace", check=False,
                             stdin=subprocess.DEVNULL, timeout=600)
     summary, history = path.with_suffix(".json"), folder / f"{name}.history.csv"
     rows = list(csv.DictReader(history.open())) if history.exists() else []
@@ -203,10 +209,32 @@ def by_force(deck, forces, times, point=None, stiffness=0):
     return deck
 
 
+def done_again(options, deck, folder, rows):
+    """What is wrong of a history that is done once more, in parts and on several ranks; None: nothing"""
+    if len(rows) < len(deck["Steps"]["Times"]):
+        return None
+    times, every = deck["Steps"]["Times"], "--set=Steps->Checkpoint Every=1"
+    _, _, whole, _ = run(options.rpc, deck, folder, "whole", every)
+    run(options.rpc, deck, folder, "parts", every, f"--set=Steps->Times={{{', '.join(map(str, times[:len(times) // 2]))}}}")
+    code, _, parts, words = run(options.rpc, deck, folder, "parts", every, "--restart")
+    digits = [[{key: value for key, value in row.items() if key != "seconds"} for row in each] for each in (whole, parts)]
+    if code != 0 or digits[0] != digits[1]:
+        return f"a restart ends with {code} and other digits {words}"
+    for ranks in range(2, options.histories + 1):
+        code, _, found, words = run(options.rpc, deck, folder, f"ranks{ranks}", launch=["mpiexec", "-np", str(ranks), "--oversubscribe", "--bind-to", "none"])
+        if code != 0:
+            return f"{ranks} ranks end with {code}: {words}"
+        for name in ("obstacle_displacement_y", "contact_force_y", "strain_energy"):
+            a, b = column(rows, name), column(found, name)
+            if max(abs(x - y) for x, y in zip(a, b)) > SAME * max(map(abs, a)):
+                return f"{ranks} ranks have another {name}: {a} and {b}"
+    return None
+
+
 def judge(options, number):
     """(complaint or None, what happened, ratio of Newton steps or None)"""
     if options.moved == "obstacle":
-        deck, times, path, point = with_tool(options.seed, number)
+        deck, times, path, point = with_tool(options.seed, number, options.histories > 0)
         of_force, of_path, wanted, key = "contact_force", "obstacle_displacement_y", [eval_at(path, t) for t in times or [1.0]], "contact_force_y"
     else:
         (deck, times), point, key = scene(options.seed, number), None, "top_reaction_y"
@@ -238,6 +266,10 @@ def judge(options, number):
         else:
             back = column(rows, "top_displacement_y") if times else [found["force_displacement"]["top"][1]]
         off = max(abs(a - b) for a, b in zip(wanted, back)) / max(abs(a) for a in wanted)
+        if options.histories:
+            wrong = done_again(options, pressed, folder, rows)
+            if wrong:
+                return wrong, "", None
         if not stiffness and not determines(deck, given, given_rows):
             return None, "all that touches yields: not compared", None
         ratio = steps_of(found) / max(1, steps_of(given))
@@ -356,7 +388,9 @@ def tell_bars(all_held, failed):
 
 
 def main():
-    options = trials.arguments(__doc__, 50, ("--moved", {"default": "side", "choices": ["side", "obstacle", "rigid"]}), ("--bars", {"type": int, "default": 0}), ("--springs", {"type": int, "default": 0}))
+    options = trials.arguments(__doc__, 50, ("--moved", {"default": "side", "choices": ["side", "obstacle", "rigid"]}), ("--bars", {"type": int, "default": 0}), ("--springs", {"type": int, "default": 0}), ("--histories", {"type": int, "default": 0}))
+    if options.histories and (options.moved != "obstacle" or options.bars):
+        sys.exit("forces.py: --histories=RANKS goes with --moved=obstacle without --bars")
     if options.springs and (options.moved != "obstacle" or options.bars):
         sys.exit("forces.py: --springs=1 goes with --moved=obstacle without --bars; rigid.py has springs of rigid sides")
     if options.moved == "rigid" and not options.bars:
