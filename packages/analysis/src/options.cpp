@@ -63,7 +63,7 @@ Teuchos::ParameterList valid_prediction_parameters()
   valid.set("Coarsening", 4.,
             "Ratio of cell lengths from one mesh to the next, in [1.5, 100]. Boxes of order 1 are halved until the "
             "direction with most cells has so few; refined meshes and those of a .msh go to their parents, in space by "
-            "half of it.");
+            "half of it, and for the tetrahedra of a .msh by one mesh more.");
   valid.set("Tolerance", 1e-4, "Bound on |F|_2/|load|_2 on the coarser meshes, in (0, 1).");
   return valid;
 }

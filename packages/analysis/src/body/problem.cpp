@@ -254,7 +254,10 @@ std::shared_ptr<const Problem> Problem::coarser(const double factor, const doubl
     // Times as long as the cells of a mesh with so many nodes; near a boundary there are more of them.
     const auto longer = [&](const NestedMesh &than) { return std::pow(nodes(*mesh_) / nodes(than), 1. / own.dim()); };
     auto mesh = mesh_->parent();
-    while (longer(*mesh) < step_rules.boundary * wanted && mesh->discretization().mesh->parents) mesh = mesh->parent();
+    const auto has_parent = [&] { return mesh->discretization().mesh->parents != nullptr; };
+    while (longer(*mesh) < step_rules.boundary * wanted && has_parent()) mesh = mesh->parent();
+    // Of contracted meshes every second one: the prediction by the one between costs more than it saves.   doc/measurements.md
+    if (own.dim() == 3 && !own.parents->nested && has_parent()) mesh = mesh->parent();
     return std::make_shared<Problem>(mesh, model_, t);
   }
   if (!own.box || own.element.order == 2) return nullptr;
