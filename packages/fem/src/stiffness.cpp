@@ -6,6 +6,7 @@
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/finite.hpp"
+#include "rpc/mesh/box_grid.hpp"
 #include "stiffness_rows.hpp"
 
 #include <optional>
@@ -222,6 +223,51 @@ RowsOfNodes rows_of(const NodeStiffness<Dim, Nodes> &stiffness, const DeviceView
   return {node, place, rows};
 }
 
+/// Nodes in the order of their numbers, but from another one on.
+struct TurnedOrder {
+  LO first = 0, count = 1;
+  KOKKOS_INLINE_FUNCTION LO node(const LO place) const
+  {
+    const LO from_end = count - first;
+    return place < from_end ? first + place : place - from_end;
+  }
+};
+
+template <class Alike>
+struct AlikeInOrder {
+  Alike alike;
+  TurnedOrder order;
+  KOKKOS_FUNCTION bool operator()(const LO place, const LO other) const
+  {
+    return alike(order.node(place), order.node(other));
+  }
+};
+
+/// In a graded box each layer of nodes is a kind. They are looked for from the middle of this rank's part on: the middle of the numbers may lie at a
+/// side, where so many kinds are of few nodes that the search would end.
+template <class Alike>
+std::optional<AlikeNodes> alike_nodes_in(const mesh::Mesh &mesh, const Alike &alike)
+{
+  const LO count = mesh.num_owned_nodes();
+  if (!mesh.box || count == 0 || !(mesh.box->graded(0) || mesh.box->graded(1) || mesh.box->graded(2)))
+    return alike_nodes_of(count, alike);
+  const mesh::Block own = mesh::Grid(*mesh.box, mesh.comm().getSize()).owned_nodes(mesh.comm().getRank());
+  mesh::Index middle{};
+  for (int d = 0; d < 3; ++d) middle[d] = (own.begin[d] + own.end[d]) / 2;
+  const LO back = count / 2; // where the search begins
+  const TurnedOrder order{(static_cast<LO>(own.index_of(middle)) + count - back) % count, count};
+  const auto found = alike_nodes_of(count, AlikeInOrder<Alike>{alike, order});
+  if (!found) return found;
+  AlikeNodes result{DeviceView<int *>(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::kind_of_node"), count), {}};
+  const auto from = found->kind, to = result.kind;
+  Kokkos::parallel_for(
+      "rpc::fem::turn_kinds", device_range(count),
+      KOKKOS_LAMBDA(const LO place) { to(order.node(place)) = from(place); });
+  Kokkos::fence();
+  for (const LO place : found->example) result.example.push_back(order.node(place));
+  return result;
+}
+
 template <int Dim, int Nodes>
 std::optional<RepeatedStiffness> repeated_rows(const Discretization &d, const CellStiffness<Dim, Nodes> &cells,
                                                const DeviceView<char *> &fixed)
@@ -234,7 +280,7 @@ std::optional<RepeatedStiffness> repeated_rows(const Discretization &d, const Ce
   const LO num_owned = d.mesh->num_owned_nodes(), num_columns = d.num_overlap_dofs();
   const auto beside = nodes_beside_prescribed(d, fixed);
   const auto kinds =
-      alike_nodes_of(num_owned, SameEliminatedRows<Dim, Nodes>{stiffness, fixed, flagged(beside, num_owned)});
+      alike_nodes_in(*d.mesh, SameEliminatedRows<Dim, Nodes>{stiffness, fixed, flagged(beside, num_owned)});
   if (!on_all(kinds.has_value())) return std::nullopt;
   const auto rows = rows_of(stiffness, nodes_with_rows(*kinds), num_columns);
   const double num_rows = static_cast<double>(d.owned_dofs->getGlobalNumElements());

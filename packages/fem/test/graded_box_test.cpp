@@ -129,5 +129,17 @@ TEST(GradedBox, CellsOfALayerAreAlike)
   }
 }
 
+/// Where the middle of the numbers lies at a side, and there are more layers than kinds that the search looks at before it gives up.
+TEST(GradedBox, ManyLayersOfAWideBoxAreAlike)
+{
+  if (world()->getSize() > 1) GTEST_SKIP() << "ranks have fewer layers";
+  mesh::BoxOptions box{{0, 0, 0}, {1, 1, 1}, {64, 64, 28}, {3, 1}, {}, 0, {true, true, false}, false, {1, 1, 32}};
+  mesh::grade(box);
+  const auto d = body(box, world());
+  const auto repeated = fem::repeated_stiffness(d, fem::Materials(steel), DeviceView<char *>("free", 3 * 64 * 64 * 29));
+  ASSERT_TRUE(repeated);
+  EXPECT_GE(repeated->rows.num_kinds(), 29);
+}
+
 } // namespace
 } // namespace graded_box_test
