@@ -77,6 +77,11 @@ TEST(ErrorBoundOnRanks, OfABodyInSpaceIsThatOfOneRank)
     ASSERT_EQ(a.steps.size(), b.steps.size());
     for (std::size_t k = 0; k < b.steps.size(); ++k) EXPECT_NEAR(a.steps[k], b.steps[k], 1e-8 * size) << k;
     EXPECT_NEAR(a.moved, b.moved, 1e-10 * b.energy_norm);
+    for (std::size_t k = 0; k < b.contact_force.size(); ++k) { // w is solved to 1e-4
+      EXPECT_EQ(a.contact_force[k].missing, b.contact_force[k].missing);
+      EXPECT_NEAR(a.contact_force[k].lower, b.contact_force[k].lower, 1e-3 * (1 + b.contact_force[k].upper));
+      EXPECT_NEAR(a.contact_force[k].upper, b.contact_force[k].upper, 1e-3 * (1 + b.contact_force[k].upper));
+    }
     double sum = 0;
     const auto parts = to_host(a.squared);
     for (std::size_t c = 0; c < parts.extent(0); ++c) sum += parts(c);

@@ -70,19 +70,6 @@ double product_over_ranks(const CellInput &in, const Comm &comm, const Tractions
   return sum_all(comm, sum);
 }
 
-/// a(u, w), by norms of sums of alike size.
-double energy_product(const fem::Discretization &d, const fem::Materials &materials, const Vector &u, const Vector &w)
-{
-  const auto squared = [&](const Vector &x) { return fem::internal_work(d, materials, x).energy_norm_squared; };
-  const double of_u = squared(u), of_w = squared(w);
-  if (of_u == 0 || of_w == 0) return 0;
-  const double scale = std::sqrt(of_u / of_w);
-  Vector sum(u, Teuchos::Copy), difference(u, Teuchos::Copy);
-  sum.update(scale, w, 1);
-  difference.update(-scale, w, 1);
-  return (squared(sum) - squared(difference)) / (4 * scale);
-}
-
 } // namespace
 
 void require_covered(const analysis::Task &task)
@@ -171,20 +158,13 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   const double stress_norm = take_descent(comm, in, boundary.sides, contact, left, falls, lift, of_cell, bound);
   if (!bound.missing.empty()) return bound;
   const double rho = std::sqrt(stress_norm * stress_norm / 4 + contact.gap); // (13.13)
-  for (std::size_t k = 0; k < boundary.sides.size(); ++k) {
-    const UnitPress press = unit_press(problem, s.step.time, boundary.sides, static_cast<int>(k), options);
-    ForceBound force;
-    force.missing = press.missing;
-    if (press.missing.empty()) {
-      const double of_loads = work_of(d, known_moments(in, boundary.tractions), in, *press.w),
-                   of_all = work_of(d, known_moments(in, all), in, *press.w);
-      const double middle = of_loads - (of_all + energy_product(d, model.materials, *u, *press.w)) / 2;
-      const double room = rho * std::sqrt(fem::internal_work(d, model.materials, *press.w).energy_norm_squared);
-      force.lower = std::max(0., middle - room + press.low);
-      force.upper = std::min(largest_force(boundary.sides[k]), middle + room + press.high);
-    }
-    bound.contact_force.push_back(force);
-  }
+  const auto work_with = [&](const BoundaryTractions &tractions, const Vector &w) {
+    return work_of(d, known_moments(in, tractions), in, w);
+  };
+  const auto squared = [&](const Vector &x) { return fem::internal_work(d, model.materials, x).energy_norm_squared; };
+  add_forces(
+      problem, s, options, boundary.sides, rho, *u, [&](const Vector &w) { return work_with(boundary.tractions, w); },
+      [&](const Vector &w) { return work_with(all, w); }, squared, bound);
   return bound;
 }
 

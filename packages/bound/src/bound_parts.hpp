@@ -4,6 +4,7 @@
 #include "boundary.hpp"
 #include "cells.hpp"
 #include "constant_field.hpp"
+#include "contact_force.hpp"
 #include "galerkin.hpp"
 #include "local_terms.hpp"
 #include "rpc/bound/bound.hpp"
@@ -106,6 +107,42 @@ double take_descent(const Comm &comm, const Input &in, const std::vector<Side> &
   if (!(bound.imbalance <= 1e-8))
     bound.missing = "cells are out of balance by " + shown(bound.imbalance) + " of their forces";
   return stress_norm;
+}
+
+/// a(u, w), by norms of sums of alike size. @param squared  gives |x|^2
+template <class Squared>
+double energy_product(const Squared &squared, const Vector &u, const Vector &w)
+{
+  const double of_u = squared(u), of_w = squared(w);
+  if (of_u == 0 || of_w == 0) return 0;
+  const double scale = std::sqrt(of_u / of_w);
+  Vector sum(u, Teuchos::Copy), difference(u, Teuchos::Copy);
+  sum.update(scale, w, 1);
+  difference.update(-scale, w, 1);
+  return (squared(sum) - squared(difference)) / (4 * scale);
+}
+
+/// The intervals of contact forces. Collective.                                                  doc/bounds.md (13.14), (13.15)
+/// @param rho  of (13.13) [J^(1/2)]   @param u  (owned dofs) u^
+/// @param of_loads, of_all  work of the loads, and of these and contact's tractions, with a displacement (owned dofs) [J]
+/// @param squared  its |w|^2
+template <class Side, class Loads, class All, class Squared>
+void add_forces(const analysis::Problem &problem, const analysis::StepSolution &s,
+                const solver::LinearSolverOptions &options, const std::vector<Side> &sides, const double rho,
+                const Vector &u, const Loads &of_loads, const All &of_all, const Squared &squared, EnergyBound &bound)
+{
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    const UnitPress press = unit_press(problem, s.step.time, sides, static_cast<int>(k), options);
+    ForceBound force;
+    force.missing = press.missing;
+    if (press.missing.empty()) {
+      const double middle = of_loads(*press.w) - (of_all(*press.w) + energy_product(squared, u, *press.w)) / 2;
+      const double room = rho * std::sqrt(squared(*press.w));
+      force.lower = std::max(0., middle - room + press.low);
+      force.upper = std::min(largest_force(sides[k]), middle + room + press.high);
+    }
+    bound.contact_force.push_back(force);
+  }
 }
 
 } // namespace rpc::bound

@@ -3,6 +3,7 @@
 
 #include "boundary.hpp"
 #include "rpc/bound/bound.hpp"
+#include "space_contact.hpp"
 
 namespace rpc::bound
 {
@@ -14,12 +15,21 @@ struct UnitPress {
   std::string missing;      ///< why there is none; empty if there is one
 };
 
+/// How near places of nodes are the same [m]. Collective.
+inline double near_places(const mesh::Mesh &mesh)
+{
+  return 1e-9 * mesh::diameter(mesh);
+}
+
 /// The displacement of the body that is 1 along the normal of a contact side and 0 on all others, with the least energy. Collective.
 /// @param sides  all contact sides   @param k  which of them
 UnitPress unit_press(const analysis::Problem &problem, double time, const std::vector<ContactFacets> &sides, int k,
                      const solver::LinearSolverOptions &options);
+UnitPress unit_press(const analysis::Problem &problem, double time, const std::vector<SpaceContact> &sides, int k,
+                     const solver::LinearSolverOptions &options);
 
 /// The most that the pressures of a side can come to; infinite where they have no limit [N], in 2D per m.
 double largest_force(const ContactFacets &c);
+double largest_force(const SpaceContact &c);
 
 } // namespace rpc::bound

@@ -87,23 +87,26 @@ EnergyBound bound_of_hexahedra(const analysis::Problem &problem, const analysis:
   Solved galerkin = timed_galerkin_solution(problem, s, options, in, all, bound);
   if (!bound.missing.empty()) return bound;
 
-  const SpaceExchanges exchanges = space_exchanges(*d.mesh, in.facets);
-  const Tractions t =
-      equilibrated(in, all, galerkin.Q, mean_moments(in, *fem::on_overlap(of_run, *galerkin.u)), in.around, exchanges);
-  galerkin.Q = {}; // memory
-  const DeviceView<double *> of_part("rpc::bound::of_part", in.num_owned_cells);
-  const SpaceForms forms = cell_forms(in, *on_overlap);
-  add_bends_of_faces(in, *on_overlap, forms);
-  const RingSolves rings(in, all, forms, exchanges);
-  const DeviceView<float **> scratch("rpc::bound::scratch", in.num_cells(), in.reference.tractions);
-  Descent descent(
-      [&](const Tractions &x, const bool linear, const Tractions &y) { add_up(in, forms, x, linear, scratch, y); },
-      [&](const Tractions &g, const Tractions &z) { rings.apply(g, z); },
-      [&](const Tractions &x, const Tractions &y) { return product_over_ranks(in, comm, x, y); }, t);
-  std::vector<double> falls;
-  for (int step = 0; step < steps; ++step) falls.push_back(descent.step());
-  const StressDifference left = stress_difference(in, comm, forms, t, field, of_part);
-  take_descent(comm, in, boundary.sides, contact, left, falls, lift, of_part, bound);
+  double stress_norm = 0;
+  { // what follows has the memory of the descent
+    const SpaceExchanges exchanges = space_exchanges(*d.mesh, in.facets);
+    const Tractions t = equilibrated(in, all, galerkin.Q, mean_moments(in, *fem::on_overlap(of_run, *galerkin.u)),
+                                     in.around, exchanges);
+    galerkin.Q = {}; // memory
+    const DeviceView<double *> of_part("rpc::bound::of_part", in.num_owned_cells);
+    const SpaceForms forms = cell_forms(in, *on_overlap);
+    add_bends_of_faces(in, *on_overlap, forms);
+    const RingSolves rings(in, all, forms, exchanges);
+    const DeviceView<float **> scratch("rpc::bound::scratch", in.num_cells(), in.reference.tractions);
+    Descent descent(
+        [&](const Tractions &x, const bool linear, const Tractions &y) { add_up(in, forms, x, linear, scratch, y); },
+        [&](const Tractions &g, const Tractions &z) { rings.apply(g, z); },
+        [&](const Tractions &x, const Tractions &y) { return product_over_ranks(in, comm, x, y); }, t);
+    std::vector<double> falls;
+    for (int step = 0; step < steps; ++step) falls.push_back(descent.step());
+    const StressDifference left = stress_difference(in, comm, forms, t, field, of_part);
+    stress_norm = take_descent(comm, in, boundary.sides, contact, left, falls, lift, of_part, bound);
+  }
   const DeviceView<double *> of_cell("rpc::bound::of_cell", of_run.mesh->num_owned_cells);
   const auto parts = bound.squared;
   Kokkos::parallel_for(
@@ -112,7 +115,20 @@ EnergyBound bound_of_hexahedra(const analysis::Problem &problem, const analysis:
       });
   Kokkos::fence();
   bound.squared = of_cell;
-  bound.contact_force.assign(boundary.sides.size(), {0, 0, "forces of bodies in space have no bound"});
+  if (!bound.missing.empty()) return bound;
+  const double rho = std::sqrt(stress_norm * stress_norm / 4 + contact.gap); // (13.13)
+  const auto work_with = [&](const BoundaryTractions &tractions, const Vector &w) {
+    const RCP<const Vector> x = fem::on_overlap(of_run, w);
+    const FieldOfHexahedra of_w = field_of_hexahedra(in, *x);
+    return work_of_loads(in, comm, tractions, *x) + work_of_hexahedra(in, comm, of_w).of_body_force;
+  };
+  const auto squared = [&](const Vector &w) {
+    const RCP<const Vector> x = fem::on_overlap(of_run, w);
+    return 2 * work_of_hexahedra(in, comm, field_of_hexahedra(in, *x)).energy;
+  };
+  add_forces(
+      problem, s, options, boundary.sides, rho, *u, [&](const Vector &w) { return work_with(boundary.tractions, w); },
+      [&](const Vector &w) { return work_with(all, w); }, squared, bound);
   return bound;
 }
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace rpc::bound
 {
@@ -77,17 +78,26 @@ EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::Ste
   const DeviceView<double *> of_cell("rpc::bound::of_cell", in.num_owned_cells);
   const RCP<const Vector> on_overlap = fem::on_overlap(d, *u);
   const SpaceForms forms = cell_forms(in, *on_overlap);
-  const RingSolves rings(in, all, forms, exchanges);
+  std::optional<RingSolves> rings(std::in_place, in, all, forms, exchanges);
   const DeviceView<float **> scratch("rpc::bound::scratch", in.num_cells(), in.reference.tractions);
   Descent descent(
       [&](const Tractions &x, const bool linear, const Tractions &y) { add_up(in, forms, x, linear, scratch, y); },
-      [&](const Tractions &g, const Tractions &z) { rings.apply(g, z); },
+      [&](const Tractions &g, const Tractions &z) { rings->apply(g, z); },
       [&](const Tractions &x, const Tractions &y) { return product_over_ranks(in, comm, x, y); }, t);
   std::vector<double> falls;
   for (int step = 0; step < steps; ++step) falls.push_back(descent.step());
+  rings.reset(); // memory
   const StressDifference left = stress_difference(in, comm, forms, t, *on_overlap, of_cell);
-  take_descent(comm, in, boundary.sides, contact, left, falls, lift, of_cell, bound);
-  bound.contact_force.assign(boundary.sides.size(), {0, 0, "forces of bodies in space have no bound"});
+  const double stress_norm = take_descent(comm, in, boundary.sides, contact, left, falls, lift, of_cell, bound);
+  if (!bound.missing.empty()) return bound;
+  const double rho = std::sqrt(stress_norm * stress_norm / 4 + contact.gap); // (13.13)
+  const auto work_with = [&](const BoundaryTractions &tractions, const Vector &w) {
+    return work_of(d, known_moments(in, tractions), in, w);
+  };
+  add_forces(
+      problem, s, options, boundary.sides, rho, *u, [&](const Vector &w) { return work_with(boundary.tractions, w); },
+      [&](const Vector &w) { return work_with(all, w); },
+      [&](const Vector &x) { return fem::internal_work(d, model.materials, x).energy_norm_squared; }, bound);
   return bound;
 }
 
