@@ -156,7 +156,7 @@ TEST(RigidBodyModes, AreZeroAtNoNode)
     mesh::BoxOptions box;
     box.lower.assign(dim, 0.);
     box.upper.assign(dim, 1.);
-    box.cells.assign(dim, 2);
+    box.cells.assign(dim, 4);
     box.element = {dim, 1};
     const auto d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, world())), {});
     const auto modes = fem::rigid_body_modes(d);
