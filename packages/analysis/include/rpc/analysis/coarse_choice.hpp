@@ -41,7 +41,7 @@ private:
   RCP<const Comm> comm_;
   std::vector<LO> points_;           // that take part, of this rank
   std::optional<CoarseModel> model_; // on rank 0
-  Headway headway_{{1, choice_rules.most_idle, Headway::unlimited,
+  Headway headway_{{1, choice_rules.most_idle_coarse, Headway::unlimited,
                     solver::newton_rules.most_inner_steps}}; // of changes by pressures
 };
 

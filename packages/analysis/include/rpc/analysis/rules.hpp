@@ -14,7 +14,7 @@ namespace rpc::analysis
 /// A choice is an update of the active set; overshoot is the ratio of inadmissible to admissible contact forces. doc/theory.md (5.7) to (5.9)
 struct ChoiceRules {
   // When choices by pressures end
-  Rule<int> most_idle{6, "choice.most_idle", "choices without progress; from states that the path tries, too; in a row, by a coarser mesh [-]", "measurements.md: Limits on active-set updates"};
+  Rule<int> most_idle{6, "choice.most_idle", "choices without progress, from states that the path tries, too [-]", "measurements.md: Limits on active-set updates"};
   Rule<int> most_changes{10, "choice.most_changes", "choices with friction, with progress or not [-]", "not measured"};
   Rule<double> most_left{10, "choice.most_left", "predicted changes to go that count as progress [choices]",
                          "measurements.md: Limits on active-set updates"};
@@ -32,6 +32,8 @@ struct ChoiceRules {
   // When a coarser mesh chooses
   Rule<int> steps_before_coarse{4, "choice.steps_before_coarse", "steps before a coarser mesh chooses without overshoot [-]", "not measured"};
   Rule<double> one_more{1, "choice.one_more", "predicted changes to go above which it does [choices]", "not measured"};
+  Rule<int> most_idle_coarse{3, "choice.most_idle_coarse", "of these in a row without fewer changes than before [-]",
+                             "measurements.md: Ablation of all rules"};
   Rule<GO> most_coarse_unknowns{60'000, "choice.most_coarse_unknowns", "unknowns of the coarser mesh, whose stiffness rank 0 holds [-]",
                                 "not measured"};
   Rule<double> model_seconds{1, "choice.model_seconds", "time of a factor of the coarser mesh [s]", "not measured"};
@@ -107,6 +109,7 @@ struct LinearRules {
   Rule<double> softer_tetrahedra{0.45, "body.softer_tetrahedra", "the soft part's where they have [-]", "theory.md (4.15a)"};
   // Iterations to expect, to 1e-8
   Rule<double> expected_of_mixed{30, "body.expected_of_mixed", "of the mixed form [CG iterations]", "theory.md (4.10d)"};
+  Rule<double> cost_of_step{0.035, "body.cost_of_step", "step of the polynomial for pressures [CG iterations]", "theory.md (4.10d)"};
   Rule<double> expected{6, "body.expected", "of other bodies, times (1 - 2 nu)^(-1/2) [CG iterations]", "theory.md (4.10b)"};
   Rule<double> rough_incompressible{0.002, "body.rough_incompressible", "1 - 2 nu below which solves while states change are better [-]",
                                     "theory.md (5.9b)"};
