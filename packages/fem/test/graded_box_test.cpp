@@ -104,7 +104,7 @@ TEST(GradedBox, CellsOfALayerAreAlike)
     if (element.dim == 3) box.cells[1] *= 4;
     mesh::grade(box);
     const auto d = body(box, world());
-    if (world()->getSize() == 1) EXPECT_EQ(d.congruent.size(), box.cells[element.dim - 1]);
+    EXPECT_TRUE(world()->getSize() > 1 || d.congruent.size() == box.cells[element.dim - 1]);
     EXPECT_GT(d.congruent.size(), 0);
     auto other = std::make_shared<mesh::Mesh>(*d.mesh);
     other->box = nullptr; // cells are compared
