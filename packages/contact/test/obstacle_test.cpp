@@ -227,7 +227,7 @@ TEST(ObstacleOptions, KindsDescribeThemselves)
                             "circle in the middle of its tube, > 0 [m].");
   for (const auto &entry : valid) { // each goes with the types that its help begins with, and is refused with others
     const std::string &name = entry.first;
-    if (name == "Type" || name.find("Force ") == 0) continue; // forces go with all
+    if (name == "Type" || name.find("Force ") == 0 || name.find("Stiffness ") == 0) continue; // these go with all
     Teuchos::ParameterList list;
     list.set("Type", help(name).find("plane") == 0 ? "circle" : "plane");
     if (valid.isType<double>(name))
