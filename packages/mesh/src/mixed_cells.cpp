@@ -287,11 +287,12 @@ private:
       positive = positive || value > 0;
       negative = negative || value < 0;
     }
-    RPC_REQUIRE_CODE(!positive || !negative, ExitCode::bad_mesh,
-                     where_ << label_of(contents_, cell) << ", with node " << own[0]
-                            << ", is bent so far that some of the " << (contents_.dim == 2 ? "triangles" : "tetrahedra")
-                            << " that it is divided into are turned over, or its nodes are not in gmsh's order; make "
-                               "smaller or better shaped cells there, or a mesh of tetrahedra alone");
+    RPC_REQUIRE_CODE(
+        !positive || !negative, ExitCode::bad_mesh,
+        where_ << label_of(contents_, cell) << ", with node " << own[0] << ", is bent so far that some of the "
+               << (contents_.dim == 2 ? "triangles" : "tetrahedra")
+               << " that it is divided into are turned over, or its nodes are not in the order of its kind; make "
+                  "smaller or better shaped cells there, or a mesh of tetrahedra alone");
   }
 
   /// Quadrilaterals of sides.

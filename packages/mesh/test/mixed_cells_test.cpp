@@ -56,7 +56,7 @@ TEST(MixedCells, CellsThatCannotBeDividedAreRefused)
   expect_refused(with_element(wedge_and_pyramid(), 3, "12 7 2 4 0 2 3 5 6 7"),
                  {"wedge 11 of \"lower\" and pyramid 12 of \"upper\"", "different orders", "2, 3, 5 and 6"});
   expect_refused(with_element(wedge_and_pyramid(), 2, "11 6 2 3 0 1 2 3 5 6 4"),
-                 {"wedge 11 of \"lower\", with node 1, is bent so far", "nodes are not in gmsh's order"});
+                 {"wedge 11 of \"lower\", with node 1, is bent so far", "nodes are not in the order of its kind"});
   expect_refused(with_element(wedge_and_pyramid(), 3, "12 7 2 4 0 2 3 6 5 8"), {"node 8", "lacks"});
   expect_refused(with_element(wedge_and_pyramid(), 3, "12 4 2 4 0 3 5 6 7"),
                  {"meets triangles", "3, 5 and 6", "put pyramids between"});
