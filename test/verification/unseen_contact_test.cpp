@@ -40,6 +40,16 @@ TEST(UnseenContact, AMeshWhoseNodesMissTheObstacleSaysSo)
   }
 }
 
+TEST(UnseenContact, AHeldNodeThatIsClearOfTheFoundationSeesNothing)
+{
+  for (const std::string element : {"P1", "P2", "Q1", "Q2"}) {
+    SCOPED_TRACE(element);
+    const Solution s = run_scene(decks + "unseen_circle.xml", {"Mesh->Element=" + element, "Mesh->Cells={2, 2}",
+                                                               "Dirichlet->left->X=0", "Dirichlet->left->Y=0"});
+    EXPECT_NEAR(s.contact.total.unseen_penetration, 0.01, 1e-5);
+  }
+}
+
 TEST(UnseenContact, AdaptiveMeshesFindItWhoeverMakesThem)
 {
   for (const std::string way : {"P1,gmsh", "P2,gmsh", "P2,nested"}) {

@@ -50,6 +50,7 @@ void take_over_dirichlet(ContactNodes &c, const fem::DirichletDofs &dirichlet, c
       Kokkos::Max<double>(largest_gap));
   // Prescribed displacements and gaps that are meant to be equal differ by rounding: sin(pi) is not 0.
   const double rounding = Rounding::sum * (std::max(0., max_all(comm, largest_gap)) + dirichlet.value->normInf());
+  constexpr double least = std::numeric_limits<double>::min();
   Kokkos::parallel_for(
       "rpc::contact::directions", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
         double length = 0, free_gap = nodes.gap(i) + nodes.dent(i); // (3.4), (11.1)
@@ -69,7 +70,7 @@ void take_over_dirichlet(ContactNodes &c, const fem::DirichletDofs &dirichlet, c
         const bool open_to_choice = weightless || touches;
         nodes.free_gap(i) = nodes.fixed(i) && open_to_choice ? 0 : free_gap;
         if (nodes.fixed(i) && tied && !weightless) // settle_tied_points() tells whether it touches
-          nodes.free_gap(i) = math::larger(free_gap, std::numeric_limits<double>::min());
+          nodes.free_gap(i) = math::larger(free_gap, least);
       });
   Kokkos::fence();
 }

@@ -96,7 +96,9 @@ RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const Cont
     Kokkos::parallel_for(
         "rpc::contact::bearing_points",
         Kokkos::RangePolicy<ExecutionSpace, LO>(points.first(side), points.first(side + 1)), KOKKOS_LAMBDA(const LO i) {
-          const bool weighs = c.weight(i) > 0, pressed = weighs && (p(i) > 0 || c.fixed(i));
+          // A held point that is clear of the foundation bears nothing; of one that touches, the pressure is the support's affair.
+          const bool touches = c.fixed(i) && !(c.free_gap(i) > 0);
+          const bool weighs = c.weight(i) > 0, pressed = weighs && (p(i) > 0 || touches);
           double deep = c.dent(i);
           if (pressed && v(i) > deep) deep = v(i);
           to(c.node(i), int(FacetRows::allowed)) = weighs && deep > 0 ? deep : 0;
