@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Obstacles on springs: series of springs by hand, springs so stiff or so soft that they are a path or a force, and what they are refused for."""
 
+import json
 import unittest
 
 from obstacle_forces import (ABOVE_NODE, BAD_INPUT, BALL, BEFORE_AXIS, BOX, CUBE, NO_SOLUTION, ROLLER, RUBS, SAME, SPRINGS, STEPS, YIELDS, by_force,
@@ -93,6 +94,16 @@ class ObstacleSprings(WrittenDeckTestCase):
         self.assertAlmostEqual(found["contact_force"][1], -25, delta=1e-8)
         self.assertAlmostEqual(found["obstacle_spring_force"][0], -32.5, delta=1e-6)
         self.assertAlmostEqual(found["obstacle_displacement"][0], 0.325, delta=1e-8)
+
+    def test_a_force_that_jumps_at_one_place_ends_the_search_there(self):
+        # One node lies in a groove whose walls push the tool to and fro: the force of the spring is nowhere that of the node.
+        heights = [(0.01 * i, 0.105 + 0.005 * abs(i - 5)) for i in range(11)]
+        (self.folder / "groove.csv").write_text("\n".join(["x,height"] + [f"{x},{h}" for x, h in heights]))
+        groove = "Type: height map, File: groove.csv, Normal: [0.0, -1.0], Interpolation: bilinear, Origin: [0.83, 1.1], Stiffness X: 1.0"
+        self.solve("groove", written(BOX, groove, "Q1", more="Steps: {Times: [1], Max Halvings: 0}"), code=4)
+        found = json.loads((self.folder / "groove" / "groove.json").read_text())
+        self.assertIn("jumps at one place", found["reason"])
+        self.assertLess(found["uzawa_iterations"], 50)  # as many as halve the way to the tolerance of 1e-11
 
     @unittest.skipIf(RANKS > 1, "once is enough")
     def test_a_restart_goes_on_with_the_same_digits(self):

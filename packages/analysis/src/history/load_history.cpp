@@ -276,12 +276,17 @@ void add_searched(const StepSolution &before, StepSolution &s)
 }
 
 /// Where searches for the obstacle have not ended.
-void give_up_search(const Point &way, StepSolution &s)
+/// @param jumps  whether they have come down to one place, at which the force that it takes jumps
+void give_up_search(const Point &way, const bool jumps, StepSolution &s)
 {
   s.uzawa.converged = false;
   std::ostringstream reason;
-  reason << "the obstacle that a force moves does not come to rest: of " << step_rules.most_searches
-         << " searches none has brought it nearer, and the last has moved it by " << length(way);
+  reason << "the obstacle that a force or a spring moves does not come to rest: ";
+  if (jumps)
+    reason << "the force that it takes jumps at one place, as at a kink of its surface";
+  else
+    reason << "of " << step_rules.most_searches << " searches none has brought it nearer";
+  reason << ", and the last search has moved it by " << length(way);
   s.uzawa.reason = reason.str();
 }
 
@@ -334,12 +339,14 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
     const bool rounds = searched && length(way) >= length(way_before);
     const double of_rounding = step_rules.of_rounding * options.uzawa.tolerance;
     const bool rests = !is_rough && obstacle_rests(*problem_, s, rounds ? of_rounding : options.uzawa.tolerance);
+    const double least = options.uzawa.tolerance * s.u->normInf(), step_to_next = length(difference(place, seen));
+    const bool jumps = length(way) > least && !(step_to_next > least); // halfway between two places is as good as there
     if (by_force) take_to_obstacle(way, s);
     if (searched) add_searched(*searched, s);
     if (!s.uzawa.converged) return s;
-    if ((!on_foundation && rests) ||
-        (by_force ? ways.add(length(difference(place, seen))) : searches.take(true)) == Headway::Answer::stuck) {
-      if (!rests) give_up_search(way, s);
+    if ((!on_foundation && rests) || (!rests && jumps) ||
+        (by_force ? ways.add(step_to_next) : searches.take(true)) == Headway::Answer::stuck) {
+      if (!rests) give_up_search(way, jumps, s);
       break;
     }
     const auto next = on_foundation ? met_at(*s.u, s.step.obstacle) : met;
