@@ -173,11 +173,12 @@ struct LengthClasses {
   int count = 0;
 
   /// @param rounding  up to which lengths are equal [m]
-  static LengthClasses of(const std::vector<double> &ends, const double rounding)
+  /// @param most      classes; one more ends the search, for each cell is compared with all of them
+  static LengthClasses of(const std::vector<double> &ends, const double rounding, const std::size_t most)
   {
     std::vector<double> lengths; // of the classes
     std::vector<int> of_cell;
-    for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+    for (std::size_t k = 0; k + 1 < ends.size() && lengths.size() <= most; ++k) {
       const double length = ends[k + 1] - ends[k];
       const auto alike = std::find_if(lengths.rbegin(), lengths.rend(),
                                       [&](const double other) { return std::abs(length - other) <= rounding; });
@@ -246,7 +247,7 @@ std::vector<LO> examples_of_layers(const mesh::Mesh &mesh, const DeviceView<sign
   const double rounding = relative_rounding * farthest;
   for (int d = 0; d < Dim; ++d) {
     if (!(rounding <= 1e-10 * mesh.box->node_distance(d))) return {};
-    kernel.along[d] = LengthClasses::of(mesh::cell_ends(*mesh.box, d), rounding);
+    kernel.along[d] = LengthClasses::of(mesh::cell_ends(*mesh.box, d), rounding, most_kinds);
     kinds *= kernel.along[d].count;
     if (kinds > most_kinds) return {};
   }
