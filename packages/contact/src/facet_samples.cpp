@@ -74,13 +74,6 @@ double FacetRows::most_allowed(const LO f) const
   return most;
 }
 
-double FacetRows::most_excess(const LO f) const
-{
-  double most = column(f, 0, excess);
-  for (int a = 1; a < nodes; ++a) most = std::max(most, column(f, a, excess));
-  return most;
-}
-
 namespace
 {
 
@@ -103,7 +96,6 @@ RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const Cont
           if (pressed && v(i) > deep) deep = v(i);
           to(c.node(i), int(FacetRows::allowed)) = weighs && deep > 0 ? deep : 0;
           to(c.node(i), int(FacetRows::bearing)) = !weighs ? -1 : pressed ? 1 : 0;
-          to(c.node(i), int(FacetRows::excess)) = v(i) - (deep > 0 ? deep : 0);
           to(c.node(i), int(FacetRows::penetration)) = v(i) - c.dent(i);
           to(c.node(i), int(FacetRows::dent)) = c.dent(i);
           to(c.node(i), int(FacetRows::pressure)) = p(i);

@@ -28,10 +28,10 @@ std::vector<FacetShape> lattice_of(const mesh::Element &facet, int parts);
 
 /// Facets of a side, each with what its nodes have: the place [m], the displacement [m], and the columns.
 struct FacetRows {
-  /// How deep the contact points have been pressed in [m]; whether they bear a pressure (1), are open (0), or have no weight (-1); how much
-  /// deeper they lie [m]; their penetration below the dented surface [m], the dents [m] and the pressure [Pa]. A node from which the normal
-  /// misses the obstacle is open, and may be near.
-  enum Column { allowed, bearing, excess, penetration, dent, pressure, num_columns };
+  /// How deep the contact points have been pressed in [m]; whether they bear a pressure (1), are open (0), or have no weight (-1); their
+  /// penetration below the dented surface [m], the dents [m] and the pressure [Pa]. A node from which the normal misses the
+  /// obstacle is open.
+  enum Column { allowed, bearing, penetration, dent, pressure, num_columns };
 
   HostView<double **> row;       // (facets; nodes * width())
   HostView<LO *> cell;           // (facets)
@@ -51,7 +51,6 @@ struct FacetRows {
   bool is_partly_open(LO f) const;
   /// How deep the contact points of a facet have been pressed in, at most [m]: points without weight, which nothing holds, count as that.
   double most_allowed(LO f) const;
-  double most_excess(LO f) const; // at its nodes [m]
 };
 
 /// Collective. @param side  which of the contact sides   @param u  (owned dofs) [m]
