@@ -47,6 +47,11 @@ SCENES = {  # name: (deck and settings, title of the part of the picture that ha
 }
 
 
+def refuse(what):
+    print("friction_cost.py: " + what, file=sys.stderr)
+    sys.exit(2)
+
+
 def seconds_of_processor():
     children = resource.getrusage(resource.RUSAGE_CHILDREN)
     return children.ru_utime + children.ru_stime
@@ -59,7 +64,10 @@ def run(command, name, mu, clock):
         settings += ["Contact->Friction Coefficient=%g" % mu, "Output->Exodus=false", "Output->CSV=false"]
         words = [*command, "--input=" + os.path.join(INPUT, deck), "--output=" + folder, *("--set=" + s for s in settings)]
         start = clock()
-        done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+        try:
+            done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+        except OSError as error:
+            refuse("cannot start %s: %s" % (command[0], error.strerror))
         seconds = clock() - start
         if done.returncode != 0:
             sys.exit("%s\nexit code %d of: %s" % (done.stdout[-2000:], done.returncode, shlex.join(words)))
@@ -100,6 +108,8 @@ def measure(options):
 
 
 def draw(path):
+    if not read(path):
+        refuse("%s has no rows; measure makes them" % path)
     import matplotlib
 
     matplotlib.use("Agg")
@@ -152,7 +162,7 @@ def main():
     options.scenes = [name.strip() for name in options.scenes.split(";")]
     for name in options.scenes:
         if name not in SCENES:
-            sys.exit("friction_cost.py: no scene \"%s\"; scenes: %s" % (name, "; ".join(SCENES)))
+            refuse("no scene \"%s\"; scenes: %s" % (name, "; ".join(SCENES)))
     measure(options)
 
 
