@@ -24,6 +24,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import typing
 
 import plane
 import trials
@@ -192,6 +193,7 @@ class Outcome:
     element: str = ""
     effectivity: float = math.nan
     uncertain: float = 0.0  # of the effectivity, by what the reference is off
+    force: typing.Optional[float] = None  # width of the interval of the contact force over the force
     first: float = math.nan  # without steps of conjugate gradients
     complaint: str = ""
     refused: bool = False
@@ -243,6 +245,8 @@ def judge_runs(options, number, element, lists, runs):
                 return outcome
             found.append(summary)
         compare(outcome, *found)
+        if options.kind == "space":
+            compare_forces(outcome, *found)
     except Exception as error:  # a run that took too long, a file that is no JSON
         outcome.complaint = f"{type(error).__name__}: {error}"[:300]
     finally:
@@ -313,6 +317,18 @@ def compare(outcome, summary, reference):
         outcome.complaint = f"[{low!r}, {high!r}] and [{low_there!r}, {high_there!r}] do not meet"
 
 
+def compare_forces(outcome, summary, reference):
+    """The interval of the force of a flat bottom must hold that of the reference, but for what the reference may err by."""
+    force, there = summary["error_bound"]["contact_force"][0], abs(reference["contact_force"][1])
+    if force is None:
+        return
+    low, high = force
+    may = (high - low) * reference["error_estimate"]["energy_norm"] / summary["error_bound"]["energy_norm"]
+    outcome.force = (high - low) / there if there > 0 else None
+    if not low - may <= there <= high + may + ROUNDING * there:
+        outcome.complaint = f"the interval of the contact force, [{low!r}, {high!r}], does not hold {there!r}, which may be off by {may:.2g}"
+
+
 def main():
     options = trials.arguments(__doc__, 100, ("--corners", {"type": int, "default": 0}), ("--laws", {"type": int, "default": 0}),
                                ("--kind", {"choices": ["plane", "space"], "default": "plane"}), ("--element", {"choices": sorted(LARGE_IN_SPACE), "default": "P1"}))
@@ -330,6 +346,9 @@ def main():
         of = sorted(o.effectivity for o in known if element in (None, o.element))
         if of:
             print(f"  {element or 'all':4} effectivity {of[0]:.3f} to {of[-1]:.3f}, median {statistics.median(of):.3f}, above {large}: {sum(e > large for e in of)} of {len(of)}")
+    widths = sorted(o.force for o in known if o.force is not None)
+    if widths:
+        print(f"  {len(widths)} intervals of contact forces hold that of the finer mesh; width over force {widths[0]:.3f} to {widths[-1]:.3f}, median {statistics.median(widths):.3f}")
     too_large = known and statistics.median(o.effectivity for o in known) > large
     return 1 if any(o.complaint for o in outcomes) or below or too_large else 0
 

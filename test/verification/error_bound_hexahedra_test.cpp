@@ -54,6 +54,10 @@ TEST(ErrorBoundOfHexahedra, HoldsTheEnergyOfAFinerMeshAndIsNear)
     ASSERT_EQ(s.bound->steps.size(), 13u);
     for (int k = 0; k < 12; ++k) EXPECT_LT(s.bound->steps[k + 1], s.bound->steps[k]);
     EXPECT_EQ(static_cast<LO>(s.bound->squared.extent(0)), s.discretization.mesh->num_owned_cells);
+    double sum = 0;
+    const auto parts = to_host(s.bound->squared);
+    for (std::size_t c = 0; c < parts.extent(0); ++c) sum += parts(c);
+    EXPECT_NEAR(sum, s.bound->energy_norm * s.bound->energy_norm, 1e-10 * sum);
   }
 }
 
@@ -126,6 +130,26 @@ TEST(ErrorBoundOfForcesInSpace, IsTheForceWhereTheElementsHaveTheSolution)
       EXPECT_LE(s.bound->contact_force[0].lower, force * (1 + 1e-9));
       EXPECT_GE(s.bound->contact_force[0].upper, force * (1 - 1e-9));
     }
+}
+
+TEST(ErrorBoundOfForcesInSpace, IsAsWideAsTheErrorOfTheStress)
+{
+  // (13.13), (13.14): w is compressed evenly from 1 at the back to 0 at the front, E * 3 m^2 / 1 m = |w|^2.
+  constexpr double of_w = 3000;
+  for (const std::string element : {"P1", "Q1"}) {
+    SCOPED_TRACE(element);
+    const Solution s =
+        run_scene(decks + "even_block_in_space.xml",
+                  {"Traction->right->X=1.5 - z^2", "Mesh->Element=" + element, "Adapt->Error Bound=guaranteed"});
+    ASSERT_EQ(s.bound->contact_force.size(), 1u);
+    const bound::ForceBound &force = s.bound->contact_force[0];
+    ASSERT_EQ(force.missing, "");
+    const double b = s.bound->steps.back();
+    EXPECT_GT(b, 1e-8);
+    EXPECT_GT(force.lower, 0);
+    EXPECT_GT(force.upper - force.lower, 2 * std::sqrt(b / 2 * of_w) * (1 - 1e-6)); // of the stress alone
+    EXPECT_LT(force.upper - force.lower, 2 * std::sqrt(b * of_w) * (1 + 1e-6));     // of contact alone
+  }
 }
 
 } // namespace

@@ -262,5 +262,78 @@ TEST(Hexahedra, HandTheirForcesToTetrahedraInBalance)
   }
 }
 
+TEST(Hexahedra, LoadsShiftForcesInBalanceAndNoneOfFacesThatAreNoParallelograms)
+{
+  for (const bool moved : {false, true}) {
+    Block b(false);
+    const auto x = b.in.coords;
+    for (LO n = 0; n < static_cast<LO>(x.extent(0)); ++n) // an outer vertex, and one at x = 0
+      if (moved && x(n, 1) == 1 && x(n, 2) == 1 && x(n, 0) != 1)
+        for (int i = 0; i < 3; ++i) x(n, i) += (x(n, 0) == 0 ? -0.05 : 0.07) * (i + 1);
+    BoundaryTractions boundary;
+    boundary.load = DeviceView<double ***>("load", b.in.facets.num_outer, FacetPolynomials::count(3, 3), 3);
+    std::mt19937 random{3};
+    for (std::size_t f = 0; f < boundary.load.extent(0); ++f)
+      for (std::size_t j = 0; j < boundary.load.extent(1); ++j)
+        for (int i = 0; i < 3; ++i) boundary.load(f, j, i) = std::uniform_real_distribution<double>(-1, 1)(random);
+    const auto shift = shift_of_loads(b.in, boundary);
+    double largest = 0;
+    for (LO h = 0; h < b.in.num_hexahedra(); ++h)
+      for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        double force = 0, moment = 0;
+        for (int a = 0; a < 8; ++a) {
+          const LO n = b.in.hexahedra(h, a);
+          force += shift(h, 3 * a + i);
+          moment += x(n, j) * shift(h, 3 * a + k) - x(n, k) * shift(h, 3 * a + j);
+          largest = std::max(largest, std::abs(shift(h, 3 * a + i)));
+        }
+        EXPECT_NEAR(force, 0, 1e-13);
+        EXPECT_NEAR(moment, 0, 1e-12) << "cell " << h << ", moved: " << moved;
+      }
+    EXPECT_GT(largest, 1e-2);
+  }
+}
+
+TEST(Hexahedra, HaveMeanMomentsOfBothSidesAlongTheNormalOfTheFirst)
+{
+  const Block b(true);
+  const auto mean = mean_moments(b.in, *b.u);
+  FieldOfHexahedra field = field_of_hexahedra(b.in, *b.u);
+  field.flattened = false;
+  const FacetRule rule = facet_rule(3, 5);
+  double jump = 0; // of both sides
+  for (LO f = 0; f < b.in.facets.size(); ++f) {
+    const int both = b.in.facets.on_boundary(f) ? 1 : 2;
+    double moment[2][3][3] = {};
+    for (int side = 0; side < both; ++side) {
+      const LO c = b.in.facets.cell(f, side);
+      const int s = b.in.facets.ordinal(f, side);
+      const AffineTetrahedron cell(b.in, c);
+      for (int q = 0; q < rule.size(); ++q) {
+        double at[4] = {}, D[3][3], sigma[3][3];
+        for (int v = 0, k = 0; v < 4; ++v)
+          if (v != s) at[v] = rule.point[q][k++];
+        field.gradient_there(cell, c, at, D);
+        stress_of_gradient(3, 2, D, sigma);
+        for (int a = 0; a < 3; ++a)
+          for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) { // the normal times the area is the slope of the vertex across, inwards
+              const double slope =
+                  s == 0 ? -cell.inverse[0][j] - cell.inverse[1][j] - cell.inverse[2][j] : cell.inverse[s - 1][j];
+              moment[side][a][i] -=
+                  (side == 0 ? 1 : -1) * rule.weight[q] * rule.point[q][a] * sigma[i][j] * slope * cell.determinant / 2;
+            }
+      }
+    }
+    for (int a = 0; a < 3; ++a)
+      for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(mean(f, a, i), (moment[0][a][i] + moment[1][a][i]) / both, 1e-12);
+        if (both == 2) jump = std::max(jump, std::abs(moment[0][a][i] - moment[1][a][i]));
+      }
+  }
+  EXPECT_GT(jump, 1e-2);
+}
+
 } // namespace
 } // namespace hexahedra_test
