@@ -11,7 +11,7 @@ reference, or a run fails. Told are the effectivities sqrt((J(u^) - lower) / (J(
 exceed LARGE. With --laws=1 foundations harden, lie on springs, rub with Tresca's friction, or keep the dents of a first step, whose meshes are nested
 triangles: then the reference is the last mesh of the same run. In space the bodies are blocks, sheared or distorted or with a corner cut out, of tetrahedra or
 hexahedra of order 1 (--element), and no laws have dents; the reference has cells of P2 half as long and no guaranteed bound: its energy must lie in the interval but for its estimated error,
-and LARGE is that of LARGE_IN_SPACE. With --corners=1 loads do not end at the corners: stresses jump with the direction there, which stresses with prescribed tractions resolve
+its contact force in the interval of the force, where there is one, but for what that error makes of it, and LARGE is that of LARGE_IN_SPACE. With --corners=1 loads do not end at the corners: stresses jump with the direction there, which stresses with prescribed tractions resolve
 worse than displacements. The exit code is 1 if a scene failed, an effectivity is below 1 by more than its reference may be off, or the median exceeds LARGE.
 """
 import dataclasses

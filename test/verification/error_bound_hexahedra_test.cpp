@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/core/error.hpp"
 #include "run_scene.hpp"
+#include "scratch_file.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -50,6 +51,7 @@ TEST(ErrorBoundOfHexahedra, HoldsTheEnergyOfAFinerMeshAndIsNear)
     EXPECT_GT(s.bound->upper, fine.energy + rubbed);
     EXPECT_LT(s.bound->upper - s.bound->lower, 1.6 * 1.6 * true_error);
     EXPECT_LT(s.bound->moved, 0.25 * s.bound->energy_norm);
+    EXPECT_GT(s.bound->moved, 1e-3 * s.bound->energy_norm); // flat on the halves of faces in contact
     EXPECT_LT(s.bound->imbalance, 1e-11);
     ASSERT_EQ(s.bound->steps.size(), 13u);
     for (int k = 0; k < 12; ++k) EXPECT_LT(s.bound->steps[k + 1], s.bound->steps[k]);
@@ -130,6 +132,69 @@ TEST(ErrorBoundOfForcesInSpace, IsTheForceWhereTheElementsHaveTheSolution)
       EXPECT_LE(s.bound->contact_force[0].lower, force * (1 + 1e-9));
       EXPECT_GE(s.bound->contact_force[0].upper, force * (1 - 1e-9));
     }
+}
+
+// Its corner at (2/3, 1/3, 1/3) lies in the plane of the three beside it, but for a ten-thousandth.
+TEST(ErrorBoundOfHexahedra, IsRefusedWhereAPartOfACellIsNearlyFlat)
+{
+  const test::ScratchFile file("cell.msh", R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+3
+2 1 "back"
+2 2 "left"
+3 3 "body"
+$EndPhysicalNames
+$Nodes
+8
+1 0 0 0
+2 1 1 0
+3 1 0 1
+4 0.6667 0.3333 0.3333
+5 0 1 0
+6 0 0 1
+7 1 1 1
+8 0 1 1
+$EndNodes
+$Elements
+3
+1 3 2 1 0 6 3 7 8
+2 3 2 2 0 1 6 8 5
+3 5 2 3 0 1 4 2 5 6 3 7 8
+$EndElements
+)");
+  const test::ScratchFile deck("cell.yaml", "cell:\n  Mesh: {Type: gmsh, File: " + file.path() +
+                                                "}\n  Material: {Young's Modulus: 1000.0, Poisson's Ratio: 0.3}\n"
+                                                "  Dirichlet: {left: {X: 0.0, Y: 0.0, Z: 0.0}}\n"
+                                                "  Body Force: {Z: \"1\"}\n  Contact: {Side: back}\n"
+                                                "  Adapt: {Error Bound: guaranteed}\n");
+  try {
+    run_scene(deck.path(), {});
+    ADD_FAILURE() << "not refused";
+  } catch (const Error &error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+    EXPECT_NE(std::string(error.what()).find("times the volume of a sixth of it"), std::string::npos) << error.what();
+  }
+}
+
+TEST(ErrorBoundOfForcesInSpace, CountsWhatTheNodesOfAHeldEndMayCarry)
+{
+  // 2 Pa on 3 m^2, where the foundation yields and the bottom prescribes what the body does: w is 0 at the side's end y = 0, 2 m long, and rises
+  // over cells of 0.5 m.
+  constexpr double force = 6, at_end = 2 * 2 * 0.5 / 2;
+  for (const std::string element : {"P1", "Q1"}) {
+    SCOPED_TRACE(element);
+    const Solution s = run_scene(decks + "even_block_in_space.xml",
+                                 {"Contact->Yield Stress=2", "Dirichlet->bottom->Z=-0.00055 - 0.00245*z",
+                                  "Mesh->Element=" + element, "Adapt->Error Bound=guaranteed"});
+    ASSERT_EQ(s.bound->contact_force.size(), 1u);
+    ASSERT_EQ(s.bound->contact_force[0].missing, "");
+    const double room = element == "P1" ? 1e-3 : 0.8; // stresses of hexahedra are near it
+    EXPECT_NEAR(s.bound->contact_force[0].lower, force - at_end, room);
+    EXPECT_LE(s.bound->contact_force[0].lower, force - at_end + 1e-9);
+    EXPECT_NEAR(s.bound->contact_force[0].upper, force, 1e-9 * force);
+  }
 }
 
 TEST(ErrorBoundOfForcesInSpace, IsAsWideAsTheErrorOfTheStress)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "hexahedra.hpp"
+#include "rpc/core/point.hpp"
 #include "space_facets.hpp"
 
 #include <algorithm>
