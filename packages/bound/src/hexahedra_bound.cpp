@@ -2,12 +2,11 @@
 #include "hexahedra_bound.hpp"
 
 #include "bound_parts.hpp"
-#include "descent.hpp"
 #include "hexahedra.hpp"
-#include "ring_solves.hpp"
 #include "space_bound.hpp"
 #include "space_boundary.hpp"
 #include "space_contact_terms.hpp"
+#include "space_descent.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -97,11 +96,7 @@ EnergyBound bound_of_hexahedra(const analysis::Problem &problem, const analysis:
     const SpaceForms forms = cell_forms(in, *on_overlap);
     add_bends_of_faces(in, *on_overlap, forms);
     const RingSolves rings(in, all, forms, exchanges);
-    const DeviceView<float **> scratch("rpc::bound::scratch", in.num_cells(), in.reference.tractions);
-    Descent descent(
-        [&](const Tractions &x, const bool linear, const Tractions &y) { add_up(in, forms, x, linear, scratch, y); },
-        [&](const Tractions &g, const Tractions &z) { rings.apply(g, z); },
-        [&](const Tractions &x, const Tractions &y) { return product_over_ranks(in, comm, x, y); }, t);
+    SpaceDescent descent(in, forms, rings, comm, t);
     std::vector<double> falls;
     for (int step = 0; step < steps; ++step) falls.push_back(descent.step());
     const StressDifference left = stress_difference(in, comm, forms, t, field, of_part);

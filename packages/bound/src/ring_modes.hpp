@@ -98,7 +98,7 @@ struct FacetModes {
       }
     }
     for (int p = 9; p < Sizes::per_facet; ++p) t[p] = of.rest[p - 6];
-    for (int p = 0; p < Sizes::per_facet; ++p)
+    for (int p = 0; components != 7 && p < Sizes::per_facet; ++p)
       if (!(components >> p % 3 & 1)) t[p] = 0;
   }
   /// The transpose.
@@ -131,6 +131,12 @@ struct FacetModes {
 struct RingFrame {
   double middle[3], unit = 0;
   int may;
+
+  /// Of answers, which are scaled, and 0 where the ring hands on nothing.
+  KOKKOS_FUNCTION RingFrame(const double (&a)[3], const double (&b)[3]) : unit(1), may(63)
+  {
+    for (int i = 0; i < 3; ++i) middle[i] = (a[i] + b[i]) / 2;
+  }
 
   template <int K>
   KOKKOS_FUNCTION RingFrame(const RingModes<K> &modes, const LO ring) : may(modes.common(ring))

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ring_solves.hpp"
 
+#include "float_products.hpp"
 #include "ring_kinds.hpp"
 #include "ring_modes.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace rpc::bound
 {
@@ -117,63 +119,77 @@ struct InvertRings {
   }
 };
 
-/// What the derivative has of each facet, for the rings of its edges.
-template <int K>
+/// What a derivative has of each facet, for the rings of its edges.
+template <int K, class Derivative>
 struct ReduceAtFacets {
   RingModes<K> modes;
-  Tractions g;
-  DeviceView<float **> shares; // (facets, numbers of a share)
+  double a;
+  Derivative g;
+  DeviceView<float *> shares; // (facets * numbers of a share) += a times it
 
   KOKKOS_FUNCTION void operator()(const LO f) const
   {
+    constexpr int n = SpaceSizes<K>::per_facet;
     if (!modes.in.facets.is_whole(f)) return;
-    const FacetShare<K> of =
-        FacetModes<K>(modes, f).reduced(&g(static_cast<std::size_t>(f) * SpaceSizes<K>::per_facet));
+    double of_facet[n];
+    const std::size_t at = static_cast<std::size_t>(f) * n;
+    for (int q = 0; q < n; ++q) of_facet[q] = g(at + q);
+    const FacetShare<K> of = FacetModes<K>(modes, f).reduced(of_facet);
     for (int i = 0; i < 3; ++i) {
-      shares(f, i) = static_cast<float>(of.force[i]);
-      shares(f, 3 + i) = static_cast<float>(of.moment[i]);
+      shares(at + i) += static_cast<float>(a * of.force[i]);
+      shares(at + 3 + i) += static_cast<float>(a * of.moment[i]);
     }
-    for (int m = 0; m < FacetShare<K>::own; ++m) shares(f, 6 + m) = static_cast<float>(of.rest[m]);
+    for (int m = 0; m < FacetShare<K>::own; ++m) shares(at + 6 + m) += static_cast<float>(a * of.rest[m]);
   }
 };
 
+/// The answers of rings: what they hand on, then what each facet has beside that; moments and linear tractions scaled as FacetShare has them.
 template <int K>
 struct SolveRings {
   RingModes<K> modes;
   DeviceView<int *> kind;
   DeviceView<std::size_t *> first;
-  DeviceView<float *> inverse, answer;
-  DeviceView<float **> shares;
+  DeviceView<float *> inverse, answer, shares;
+  DeviceView<float *> large; // (modes) work space for rings of more modes than usual; empty if there are none
 
-  KOKKOS_FUNCTION void operator()(const LO ring) const
+  static constexpr int usual = 256; // modes of 83 facets of order 1
+  /// @param work  += that of the answer with the derivative
+  KOKKOS_FUNCTION void operator()(const LO ring, double &work) const
   {
+    constexpr int own = RingModes<K>::own;
     const int n = modes.size(ring), facets = modes.in.facets.num_ring_facets(ring);
     float *const y = answer.data() + modes.first(ring);
+    float reduced[usual];
+    float *const r = n > usual ? large.data() + modes.first(ring) : reduced;
     double common[6] = {};
-    for (int i = 0; i < n; ++i) y[i] = 0;
-    const float *const H = inverse.data() + first(kind(ring));
     const RingFrame frame(modes, ring);
+    if constexpr (!on_gpu) {
+      const LO later = ring + 4 < modes.in.facets.num_rings() ? ring + 4 : ring;
+      for (int k = 0; k < modes.in.facets.num_ring_facets(later); ++k)
+        soon(shares.data() +
+             static_cast<std::size_t>(modes.in.facets.ring_facet(modes.in.facets.first_facet(later) + k)) *
+                 FacetShare<K>::size);
+    }
     for (int k = 0; k < facets; ++k) {
-      double of_facet[RingModes<K>::own], centre[3];
+      double of_facet[own], centre[3];
       const LO f = modes.in.facets.ring_facet(modes.in.facets.first_facet(ring) + k);
+      const float *const given = shares.data() + static_cast<std::size_t>(f) * FacetShare<K>::size;
       FacetShare<K> share;
       for (int i = 0; i < 3; ++i) {
-        share.force[i] = shares(f, i);
-        share.moment[i] = shares(f, 3 + i);
+        share.force[i] = given[i];
+        share.moment[i] = given[3 + i];
       }
-      for (int m = 0; m < FacetShare<K>::own; ++m) share.rest[m] = shares(f, 6 + m);
+      for (int m = 0; m < own; ++m) share.rest[m] = given[6 + m];
       modes.centre_of(f, centre);
       ModesAtFacet<K>(frame, centre, modes.toward(ring, k)).reduce(share, common, of_facet);
-      for (int m = 0; m < RingModes<K>::own; m += 3) add(H + modes.place(k, 6 + m) * n, of_facet + m, n, y);
+      for (int m = 0; m < own; ++m) r[modes.place(k, 6 + m)] = static_cast<float>(of_facet[m]);
     }
-    for (int m = 0; m < 6; m += 3) add(H + m * n, common + m, n, y);
-  }
-  /// y += three columns times factors.
-  KOKKOS_FUNCTION static void add(const float *columns, const double *factor, const int n, float *y)
-  {
-    const float a = static_cast<float>(factor[0]), b = static_cast<float>(factor[1]), c = static_cast<float>(factor[2]);
-    const float *const second = columns + n, *const third = second + n;
-    for (int i = 0; i < n; ++i) y[i] += columns[i] * a + second[i] * b + third[i] * c;
+    for (int i = 0; i < 6; ++i) r[i] = static_cast<float>(common[i]);
+    work += FloatProducts::of_ring(inverse.data() + first(kind(ring)), r, n, y);
+    const float by = static_cast<float>(frame.unit), over = static_cast<float>(1 / frame.unit);
+    for (int i = 3; i < 6; ++i) y[i] *= by;
+    for (int k = 0; k < facets; ++k)
+      for (int m = 0; m < 3; ++m) y[modes.place(k, 6 + m)] *= over;
   }
 };
 
@@ -183,13 +199,21 @@ struct ReadRings {
   RingModes<K> modes;
   DeviceView<float *> answer;
 
-  KOKKOS_FUNCTION void operator()(const LO f, const int e, const double (&centre)[3], FacetShare<K> &share) const
+  /// @param x  vertices of the facet   @param centre  of it
+  KOKKOS_FUNCTION void operator()(const LO f, const int e, const double (&x)[3][3], const double (&centre)[3],
+                                  FacetShare<K> &share) const
   {
     const LO ring = modes.in.facets.ring(f, e);
     const int k = modes.in.facets.place(f, e);
     const float *const of_ring = answer.data() + modes.first(ring);
-    ModesAtFacet<K>(RingFrame(modes, ring), centre, modes.toward(ring, k))
-        .expand(of_ring, of_ring + modes.place(k, 6), share);
+    const RingFrame frame(x[e == 1 ? 1 : 0], x[e == 0 ? 1 : 2]);
+    ModesAtFacet<K>(frame, centre, modes.toward(ring, k)).expand(of_ring, of_ring + modes.place(k, 6), share);
+  }
+  KOKKOS_FUNCTION void place_of(const LO f, double (&x)[3][3], double (&centre)[3]) const
+  {
+    for (int v = 0; v < 3; ++v)
+      for (int i = 0; i < 3; ++i) x[v][i] = modes.in.coords(modes.in.facets.node(f, v), i);
+    for (int i = 0; i < 3; ++i) centre[i] = (x[0][i] + x[1][i] + x[2][i]) / 3;
   }
 };
 
@@ -203,9 +227,9 @@ struct ServeRings {
   KOKKOS_FUNCTION void operator()(const LO k) const
   {
     FacetShare<K> share;
-    double centre[3];
-    read.modes.centre_of(served(k, 0), centre);
-    read(served(k, 0), served(k, 1), centre, share);
+    double x[3][3], centre[3];
+    read.place_of(served(k, 0), x, centre);
+    read(served(k, 0), served(k, 1), x, centre, share);
     for (int i = 0; i < 3; ++i) {
       out(k, i) = share.force[i];
       out(k, 3 + i) = share.moment[i];
@@ -214,22 +238,32 @@ struct ServeRings {
   }
 };
 
+/// d <- a d + b z with z the sum of what rings make of facets.
 template <int K>
 struct GatherRings {
   ReadRings<K> read;
   SlotExchange::Rows row; // of edges
   DeviceView<double **> fetched;
-  Tractions z;
+  double a, b;
+  Tractions d;
 
   KOKKOS_FUNCTION void operator()(const LO f) const
   {
     FacetShare<K> sum;
-    double centre[3];
-    read.modes.centre_of(f, centre);
+    double x[3][3], centre[3], z[SpaceSizes<K>::per_facet];
+    read.place_of(f, x, centre);
+    if constexpr (!on_gpu) {
+      const LO later = f + 6 < read.modes.in.facets.size() ? f + 6 : f;
+      for (int e = 0; e < 3; ++e) {
+        const LO ring = read.modes.in.facets.ring(later, e);
+        if (ring >= 0)
+          soon(read.answer.data() + read.modes.first(ring) + read.modes.place(read.modes.in.facets.place(later, e), 6));
+      }
+    }
     for (int e = 0; e < 3; ++e) {
       const LO there = row(f, e);
       if (there < 0) {
-        read(f, e, centre, sum);
+        read(f, e, x, centre, sum);
         continue;
       }
       for (int i = 0; i < 3; ++i) {
@@ -238,7 +272,9 @@ struct GatherRings {
       }
       for (int m = 0; m < FacetShare<K>::own; ++m) sum.rest[m] += fetched(there, 6 + m);
     }
-    FacetModes<K>(read.modes, f).expand(sum, &z(static_cast<std::size_t>(f) * SpaceSizes<K>::per_facet));
+    FacetModes<K>(read.modes, f).expand(sum, z);
+    const std::size_t at = static_cast<std::size_t>(f) * SpaceSizes<K>::per_facet;
+    for (int q = 0; q < SpaceSizes<K>::per_facet; ++q) d(at + q) = a * d(at + q) + b * z[q];
   }
 };
 
@@ -256,19 +292,22 @@ RingSolves::RingSolves(const SpaceInput &in, const BoundaryTractions &boundary, 
   first_ = DeviceView<std::size_t *>("rpc::bound::first", kinds.example.size());
   const auto examples = Kokkos::create_mirror_view(example);
   const auto first = Kokkos::create_mirror_view(first_);
-  std::size_t total = 0;
+  std::size_t total = 0, most = 0;
   for (std::size_t k = 0; k < kinds.example.size(); ++k) {
     examples(k) = kinds.example[k];
     first(k) = total;
     const std::size_t n = 6 + own * count(kinds.example[k]);
     total += n * n;
+    most = std::max(most, n);
   }
   Kokkos::deep_copy(example, examples);
   Kokkos::deep_copy(first_, first);
   inverse_ = DeviceView<float *>(Kokkos::view_alloc("rpc::bound::inverse", Kokkos::WithoutInitializing), total);
-  answer_ = DeviceView<float *>("rpc::bound::answer", 6 * static_cast<std::size_t>(in.facets.num_rings()) +
-                                                          own * in.facets.ring_facet.extent(0));
-  shares_ = DeviceView<float **>("rpc::bound::shares", in.facets.size(), per_facet);
+  const std::size_t of_rings =
+      6 * static_cast<std::size_t>(in.facets.num_rings()) + own * in.facets.ring_facet.extent(0);
+  size_ = static_cast<std::size_t>(in.facets.size()) * per_facet;
+  answer_ = DeviceView<float *>("rpc::bound::answer", std::max(of_rings, size_));
+  if (most > SolveRings<1>::usual) large_ = DeviceView<float *>("rpc::bound::large", of_rings);
   constexpr LO batch = 1024; // kinds at once: what bounds the work space
   const LO num_kinds = static_cast<LO>(kinds.example.size());
   for (LO from = 0; from < num_kinds; from += batch) {
@@ -284,30 +323,59 @@ RingSolves::RingSolves(const SpaceInput &in, const BoundaryTractions &boundary, 
   }
 }
 
-template <int K>
-void RingSolves::apply_of_order(const Tractions &g, const Tractions &z) const
+template <class Function>
+void RingSolves::for_order(const Function &f) const
 {
-  const RingModes<K> modes{in_, free_};
-  Kokkos::parallel_for("rpc::bound::reduce_at_facets", device_range(in_.facets.size()),
-                       ReduceAtFacets<K>{modes, g, shares_});
-  Kokkos::parallel_for("rpc::bound::solve_rings", device_range(in_.facets.num_rings()),
-                       SolveRings<K>{modes, kind_, first_, inverse_, answer_, shares_});
-  const ReadRings<K> read{modes, answer_};
+  if (in_.reference.degree == 1)
+    f(std::integral_constant<int, 1>{});
+  else
+    f(std::integral_constant<int, 2>{});
+}
+
+template <class Derivative>
+void RingSolves::add_shares(const double a, const Derivative &g, const DeviceView<float *> &shares) const
+{
+  for_order([&](const auto order) {
+    constexpr int k = order.value;
+    Kokkos::parallel_for("rpc::bound::reduce_at_facets", device_range(in_.facets.size()),
+                         ReduceAtFacets<k, Derivative>{{in_, free_}, a, g, shares});
+  });
+  Kokkos::fence();
+}
+template void RingSolves::add_shares(double, const DeviceView<float *> &, const DeviceView<float *> &) const;
+
+double RingSolves::solve(const DeviceView<float *> &shares) const
+{
+  double work = 0;
+  for_order([&](const auto order) {
+    constexpr int k = order.value;
+    Kokkos::parallel_reduce("rpc::bound::solve_rings", device_range(in_.facets.num_rings()),
+                            SolveRings<k>{{in_, free_}, kind_, first_, inverse_, answer_, shares, large_}, work);
+  });
+  return work;
+}
+
+void RingSolves::combine(const double a, const Tractions &d, const double b) const
+{
   const SlotExchange &edges = exchanges_.of_edges;
   const LO count = static_cast<LO>(edges.served().extent(0));
-  const DeviceView<double **> served("rpc::bound::served_rings", count, FacetShare<K>::size);
-  Kokkos::parallel_for("rpc::bound::serve_rings", device_range(count), ServeRings<K>{read, edges.served(), served});
-  Kokkos::parallel_for("rpc::bound::gather_rings", device_range(in_.facets.size()),
-                       GatherRings<K>{read, edges.rows(), edges.fetched(served), z});
+  for_order([&](const auto order) {
+    constexpr int k = order.value;
+    const ReadRings<k> read{{in_, free_}, answer_};
+    const DeviceView<double **> served("rpc::bound::served_rings", count, FacetShare<k>::size);
+    Kokkos::parallel_for("rpc::bound::serve_rings", device_range(count), ServeRings<k>{read, edges.served(), served});
+    Kokkos::parallel_for("rpc::bound::gather_rings", device_range(in_.facets.size()),
+                         GatherRings<k>{read, edges.rows(), edges.fetched(served), a, b, d});
+  });
   Kokkos::fence();
 }
 
 void RingSolves::apply(const Tractions &g, const Tractions &z) const
 {
-  if (in_.reference.degree == 1)
-    apply_of_order<1>(g, z);
-  else
-    apply_of_order<2>(g, z);
+  const DeviceView<float *> shares("rpc::bound::shares", z.extent(0));
+  add_shares(1, g, shares);
+  solve(shares);
+  combine(0, z, 1);
 }
 
 } // namespace rpc::bound

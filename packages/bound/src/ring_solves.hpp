@@ -3,6 +3,8 @@
 
 #include "space_cells.hpp"
 
+#include <utility>
+
 namespace rpc::bound
 {
 
@@ -15,14 +17,24 @@ public:
   /// @param exchanges  live longer
   RingSolves(const SpaceInput &in, const BoundaryTractions &boundary, const SpaceForms &forms,
              const SpaceExchanges &exchanges);
-  /// z <- sum over the rings of what least energy answers to the derivative g with. Collective.
-  /// @param g  right on facets that are whole
+  /// shares += a times what a derivative g has of each facet for its rings; g is right on facets that are whole, in single or double precision.
+  /// @param[in,out] shares  of g's size
+  template <class Derivative>
+  void add_shares(double a, const Derivative &g, const DeviceView<float *> &shares) const;
+  /// Finds what least energy answers to a derivative with, ring by ring; combine() reads it.
+  /// @return the work of this rank's answers with the derivative
+  double solve(const DeviceView<float *> &shares) const;
+  /// d <- a d + b z with the sum z of the answers. Collective.
+  void combine(double a, const Tractions &d, double b) const;
+  /// z <- the sum of the answers to g. Collective.
   void apply(const Tractions &g, const Tractions &z) const;
+  /// (tractions) Memory that is free from combine() on to the next solve().
+  DeviceView<float *> work_space() const { return Kokkos::subview(answer_, std::make_pair(std::size_t(0), size_)); }
   int num_kinds() const { return static_cast<int>(first_.extent(0)); }
 
 private:
-  template <int K>
-  void apply_of_order(const Tractions &g, const Tractions &z) const;
+  template <class Function>
+  void for_order(const Function &f) const; // of the elements, as a constant
 
   SpaceInput in_;
   const SpaceExchanges &exchanges_;
@@ -31,7 +43,8 @@ private:
   DeviceView<std::size_t *> first_;  // (kinds) where its inverse begins
   DeviceView<float *> inverse_;      // it only steers the descent
   DeviceView<float *> answer_;       // (6 rings + modes of facets)
-  DeviceView<float **> shares_;      // (facets, numbers of a share)
+  DeviceView<float *> large_;        // as answer_, where a ring has many facets; else empty
+  std::size_t size_ = 0;             // of tractions
 };
 
 } // namespace rpc::bound

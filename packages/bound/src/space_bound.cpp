@@ -2,11 +2,11 @@
 #include "space_bound.hpp"
 
 #include "bound_parts.hpp"
-#include "descent.hpp"
 #include "hexahedra_bound.hpp"
-#include "ring_solves.hpp"
+#include "rpc/core/memory.hpp"
 #include "space_boundary.hpp"
 #include "space_contact_terms.hpp"
+#include "space_descent.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +51,9 @@ EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::Ste
   if (d.mesh->element.shape != mesh::Shape::simplex) return bound_of_hexahedra(problem, s, options, 2 * steps);
   const Comm &comm = d.mesh->comm();
   const analysis::Model model = problem.model().seen_at(s.step.time);
+  return_freed_memory();
   SpaceInput in = space_input(d, model);
+  return_freed_memory();
   in.reference = reference_stress(d.mesh->element);
   find_kinds(in, d.mesh->comm());
   const SpaceBoundary boundary = boundary_of(d, model, s.step, in, tractions_of(s.contact));
@@ -74,19 +76,17 @@ EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::Ste
   const SpaceExchanges exchanges = space_exchanges(*d.mesh, in.facets);
   const Tractions t =
       equilibrated(in, all, galerkin.Q, mean_moments(in, *fem::on_overlap(d, *galerkin.u)), d.node_to_cells, exchanges);
-  galerkin.Q = {}; // memory
+  galerkin = {}; // memory
+  return_freed_memory();
   const DeviceView<double *> of_cell("rpc::bound::of_cell", in.num_owned_cells);
   const RCP<const Vector> on_overlap = fem::on_overlap(d, *u);
   const SpaceForms forms = cell_forms(in, *on_overlap);
   std::optional<RingSolves> rings(std::in_place, in, all, forms, exchanges);
-  const DeviceView<float **> scratch("rpc::bound::scratch", in.num_cells(), in.reference.tractions);
-  Descent descent(
-      [&](const Tractions &x, const bool linear, const Tractions &y) { add_up(in, forms, x, linear, scratch, y); },
-      [&](const Tractions &g, const Tractions &z) { rings->apply(g, z); },
-      [&](const Tractions &x, const Tractions &y) { return product_over_ranks(in, comm, x, y); }, t);
+  std::optional<SpaceDescent> descent(std::in_place, in, forms, *rings, comm, t);
   std::vector<double> falls;
-  for (int step = 0; step < steps; ++step) falls.push_back(descent.step());
-  rings.reset(); // memory
+  for (int step = 0; step < steps; ++step) falls.push_back(descent->step());
+  descent.reset(); // memory
+  rings.reset();
   const StressDifference left = stress_difference(in, comm, forms, t, *on_overlap, of_cell);
   const double stress_norm = take_descent(comm, in, boundary.sides, contact, left, falls, lift, of_cell, bound);
   if (!bound.missing.empty()) return bound;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "space_cells.hpp"
 
+#include "float_products.hpp"
 #include "hexahedra.hpp"
+#include "kind_difference.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -88,6 +90,7 @@ struct MakeSpaceForms {
             double sum = 0;
             for (int k = 0; k < 3; ++k) sum += G[k][i] * half[k][j];
             out.A(kind, 3 * p + i, 3 * q + j) = static_cast<float>(sum);
+            if (out.exact.extent(0) > 0) out.exact(kind, 3 * p + i, 3 * q + j) = sum;
           }
       }
     for (int p = 0; p < nt / 3; ++p)
@@ -151,34 +154,56 @@ struct MakeSpaceForms {
   }
 };
 
-/// A t, and with linear = true the first derivatives, cell by cell in the signs of the facets.
+/// target += one of two parts: their sum does not depend on which comes first.
+KOKKOS_INLINE_FUNCTION void add_part(float &target, const float part)
+{
+#ifdef KOKKOS_ENABLE_SERIAL
+  if constexpr (std::is_same_v<ExecutionSpace, Kokkos::Serial>)
+    target += part;
+  else
+#endif
+    Kokkos::atomic_add(&target, part);
+}
+
+/// A t, and with linear = true the first derivatives, in the signs of the facets.
 template <int K>
 struct DerivativeOfCells {
   SpaceInput in;
   SpaceForms forms;
   Tractions t;
   bool linear;
-  DeviceView<float **> out; // (cells, tractions)
+  DeviceView<float *> out; // (tractions) inout
 
-  KOKKOS_FUNCTION void operator()(const LO c) const
+  /// @param work  += that of t with this, of owned cells
+  KOKKOS_FUNCTION void operator()(const LO c, double &work) const
   {
-    constexpr int nt = SpaceSizes<K>::tractions;
-    double given[nt];
-    float x[nt], y[nt]; // of single precision, as A
-    read_space_tractions<K>(in, t, c, given);
+    constexpr int nt = SpaceSizes<K>::tractions, n = SpaceSizes<K>::per_facet;
+    float sign[4], y[nt]; // of single precision, as A
+    const double *given[4];
+    std::size_t from[4];
     const int kind = in.kind(c);
-    for (int i = 0; i < nt; ++i) {
-      x[i] = static_cast<float>(given[i]);
-      y[i] = linear ? static_cast<float>(forms.b(kind, i)) : 0;
-    }
-    const float *column = forms.A.data() + static_cast<std::size_t>(kind) * nt * nt; // A is symmetric
-    for (int j = 0; j < nt; j += 4, column += 4 * nt)
-      for (int i = 0; i < nt; ++i)
-        y[i] += (column[i] * x[j] + column[nt + i] * x[j + 1]) +
-                (column[2 * nt + i] * x[j + 2] + column[3 * nt + i] * x[j + 3]);
     for (int s = 0; s < 4; ++s) {
-      const float sign = static_cast<float>(in.facets.sign(c, s));
-      for (int i = s * nt / 4; i < (s + 1) * nt / 4; ++i) out(c, i) = sign * y[i];
+      const LO f = in.facets.of_cell(c, s);
+      sign[s] = in.facets.cell(f, 0) == c ? 1 : -1;
+      from[s] = static_cast<std::size_t>(f) * n;
+      given[s] = t.data() + from[s];
+    }
+    if constexpr (!on_gpu) {
+      const LO later = c + 4 < in.num_cells() ? c + 4 : c;
+      for (int s = 0; s < 4; ++s) {
+        const std::size_t at = static_cast<std::size_t>(in.facets.of_cell(later, s)) * n;
+        soon(t.data() + at);
+        soon(t.data() + at + n - 1);
+        soon(out.data() + at);
+      }
+    }
+    const float *const A = forms.A.data() + static_cast<std::size_t>(kind) * nt * nt;
+    const double *const b = linear ? forms.b.data() + static_cast<std::size_t>(kind) * nt : nullptr;
+    const double product = FloatProducts::template of_cell<nt>(A, given, sign, b, y);
+    if (c < in.num_owned_cells) work += product;
+    for (int s = 0; s < 4; ++s) {
+      float *const to = out.data() + from[s];
+      for (int q = 0; q < n; ++q) add_part(to[q], y[s * n + q]);
     }
   }
 };
@@ -298,28 +323,14 @@ struct SpaceDifference {
 
 } // namespace
 
-double product_over_ranks(const SpaceInput &in, const Comm &comm, const Tractions &x, const Tractions &y)
-{
-  const int per_facet = in.reference.tractions / 4;
-  const auto counts = in.facets.counts;
-  double sum = 0;
-  Kokkos::parallel_reduce(
-      "rpc::bound::product_in_space", device_range(in.facets.size()),
-      KOKKOS_LAMBDA(const LO f, double &part) {
-        const std::size_t at = static_cast<std::size_t>(f) * per_facet;
-        for (int q = 0; q < per_facet && counts(f); ++q) part += x(at + q) * y(at + q);
-      },
-      sum);
-  return sum_all(comm, sum);
-}
-
 SpaceForms cell_forms(const SpaceInput &in, const Vector &u)
 {
   const int nt = in.reference.tractions, kinds = static_cast<int>(in.example.extent(0)),
             functions = static_cast<int>(in.facets.node.extent(1));
   SpaceForms forms;
   forms.A = decltype(forms.A)("rpc::bound::A", kinds, nt, nt);
-  forms.b = DeviceView<double **>("rpc::bound::b", kinds, nt);
+  if (energies_by_kinds(in)) forms.exact = decltype(forms.exact)("rpc::bound::exact", kinds, nt, nt);
+  forms.b = decltype(forms.b)("rpc::bound::b", kinds, nt);
   forms.inner = DeviceView<double ***>("rpc::bound::inner", kinds, nt + 1, in.reference.inner);
   forms.boundary =
       DeviceView<double *>("rpc::bound::boundary", static_cast<std::size_t>(in.facets.num_outer) * 3 * functions);
@@ -344,27 +355,21 @@ SpaceForms cell_forms(const SpaceInput &in, const Vector &u)
   return forms;
 }
 
-void add_up(const SpaceInput &in, const SpaceForms &forms, const Tractions &t, const bool linear,
-            const DeviceView<float **> &scratch, const Tractions &sum)
+double derivative(const SpaceInput &in, const SpaceForms &forms, const Tractions &t, const bool linear,
+                  const DeviceView<float *> &out)
 {
-  for_order(in.reference.degree, [&](const auto order) {
-    Kokkos::parallel_for("rpc::bound::derivative_of_cells", device_range(in.num_cells()),
-                         DerivativeOfCells<order.value>{in, forms, t, linear, scratch});
-  });
-  const SpaceFacets facets = in.facets;
-  const int per_facet = in.reference.tractions / 4;
+  Kokkos::deep_copy(out, 0);
   const auto boundary = forms.boundary;
-  Kokkos::parallel_for(
-      "rpc::bound::gather_at_facets", device_range(facets.size()), KOKKOS_LAMBDA(const LO f) {
-        for (int q = 0; q < per_facet; ++q) {
-          const std::size_t at = static_cast<std::size_t>(f) * per_facet + q;
-          double y = linear && facets.on_boundary(f) ? boundary(at) : 0;
-          for (int side = 0; side < 2; ++side) // where a cell is elsewhere nobody asks for it
-            if (facets.cell(f, side) >= 0) y += scratch(facets.cell(f, side), facets.ordinal(f, side) * per_facet + q);
-          sum(at) = y;
-        }
-      });
-  Kokkos::fence();
+  if (linear)
+    Kokkos::parallel_for(
+        "rpc::bound::derivative_at_boundary", device_range(static_cast<LO>(boundary.extent(0))),
+        KOKKOS_LAMBDA(const LO i) { out(i) = static_cast<float>(boundary(i)); });
+  double work = 0;
+  for_order(in.reference.degree, [&](const auto order) {
+    Kokkos::parallel_reduce("rpc::bound::derivative_of_cells", device_range(in.num_cells()),
+                            DerivativeOfCells<order.value>{in, forms, t, linear, out}, work);
+  });
+  return work;
 }
 
 namespace
@@ -384,6 +389,7 @@ StressDifference over_ranks(const Comm &comm, StressDifference d)
 StressDifference stress_difference(const SpaceInput &in, const Comm &comm, const SpaceForms &forms, const Tractions &t,
                                    const Vector &u, const DeviceView<double *> &of_cell)
 {
+  if (forms.exact.extent(0) > 0) return difference_of_kinds(in, comm, forms, t, u, of_cell);
   StressDifference d;
   for_order(in.reference.degree, [&](const auto order) {
     constexpr int k = order.value;

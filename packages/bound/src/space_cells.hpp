@@ -14,18 +14,19 @@ namespace rpc::bound
 struct SpaceForms {
   /// (kinds, tractions, tractions), each of which lies in one piece; it only steers the descent
   Kokkos::View<float ***, Kokkos::LayoutRight, Device> A;
-  DeviceView<double **> b; ///< (kinds, tractions) what the body force adds
+  /// The same in double precision, by which the bound itself is found; empty where there are too many kinds.
+  Kokkos::View<double ***, Kokkos::LayoutRight, Device> exact;
+  Kokkos::View<double **, Kokkos::LayoutRight, Device> b; ///< (kinds, tractions) what the body force adds
   DeviceView<double ***>
       inner; ///< (kinds, tractions + 1, inner) the best inner stresses by tractions of the image; the last row is that of the body force
   DeviceView<double *> boundary; ///< (outer facets * polynomials * 3) what the displacement on the boundary adds
 };
 /// @param u  (overlap dofs)
 SpaceForms cell_forms(const SpaceInput &in, const Vector &u);
-/// @param[out] scratch  (cells, tractions)
-void add_up(const SpaceInput &in, const SpaceForms &forms, const Tractions &t, bool linear,
-            const DeviceView<float **> &scratch, const Tractions &sum);
-/// The inner product, each facet counted by one rank. Collective.
-double product_over_ranks(const SpaceInput &in, const Comm &comm, const Tractions &x, const Tractions &y);
+/// @param[out] out  of t's size, in single precision: it steers the descent; right on facets that are whole
+/// @return the sum of t times the derivative without what displacements of the boundary add, over this rank's cells
+double derivative(const SpaceInput &in, const SpaceForms &forms, const Tractions &t, bool linear,
+                  const DeviceView<float *> &out);
 /// Collective. @param of_cell  (owned cells)
 StressDifference stress_difference(const SpaceInput &in, const Comm &comm, const SpaceForms &forms, const Tractions &t,
                                    const Vector &u, const DeviceView<double *> &of_cell);

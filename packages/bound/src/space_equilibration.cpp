@@ -19,6 +19,7 @@ struct BalanceStarsInSpace {
   LO from;                         // the first node of a batch
   DeviceView<double *> matrix;     // of a batch
   DeviceView<double **> sent;      // (entries of node_to_cells, 3) out
+  DeviceView<double *> area;       // (facets) what is in one relation to it; a moment's square counts by one over that
 
   KOKKOS_FUNCTION int node_of_cell(const LO c, const LO node) const
   {
@@ -35,13 +36,6 @@ struct BalanceStarsInSpace {
   KOKKOS_FUNCTION bool is_known(const LO f, const int i) const
   {
     return in.facets.on_boundary(f) && boundary.known(f, i);
-  }
-  /// What is in one relation to the area. A moment's square counts in the least squares by one over the area.
-  KOKKOS_FUNCTION double area(const LO f) const
-  {
-    const FacetFrame frame(in, f);
-    return math::sqrt(frame.normal[0] * frame.normal[0] + frame.normal[1] * frame.normal[1] +
-                      frame.normal[2] * frame.normal[2]);
   }
   KOKKOS_FUNCTION bool same_as_before(const LO node, const int i) const
   {
@@ -95,51 +89,91 @@ struct BalanceStarsInSpace {
   KOKKOS_FUNCTION void operator()(const LO of_batch) const
   {
     const LO node = from + of_batch;
-    const std::size_t begin = around.row(node);
-    const int n = static_cast<int>(around.row(node + 1) - begin);
     double *const L = matrix.data() + (first(node) - first(from));
+    if (same_as_before(node, 1) && same_as_before(node, 2)) {
+      solve<3>(node, 0, factor(node, 0, L), L);
+      return;
+    }
     bool singular = false;
     for (int i = 0; i < 3; ++i) {
       if (!same_as_before(node, i)) singular = factor(node, i, L);
-      double rest = 0;
-      for (int k = 0; k < n; ++k) { // what lacks
-        const LO c = around.cell(begin + k);
-        double r = Q(c, node_of_cell(c, node), i);
-        for (int s = 0; s < 4; ++s) {
-          const LO f = in.facets.of_cell(c, s);
-          const int a = node_of_facet(f, node);
-          if (a >= 0) r -= in.facets.sign(c, s) * (is_known(f, i) ? known(f, a, i) : mean(f, a, i));
-        }
-        sent(begin + k, i) = r;
-        rest += r;
+      solve<1>(node, i, singular, L);
+    }
+  }
+  /// Some components, from one on, with one factor: no addition waits for another component's.
+  template <int Count>
+  KOKKOS_FUNCTION void solve(const LO node, const int begin_with, const bool singular, const double *const L) const
+  {
+    const std::size_t begin = around.row(node);
+    const int n = static_cast<int>(around.row(node + 1) - begin);
+    double rest[Count] = {};
+    for (int k = 0; k < n; ++k) { // what lacks
+      const LO c = around.cell(begin + k);
+      double r[Count];
+      const int own = node_of_cell(c, node);
+      for (int i = 0; i < Count; ++i) r[i] = Q(c, own, begin_with + i);
+      for (int s = 0; s < 4; ++s) {
+        const LO f = in.facets.of_cell(c, s);
+        const int a = node_of_facet(f, node);
+        if (a < 0) continue;
+        const double sign = in.facets.sign(c, s);
+        for (int i = 0; i < Count; ++i)
+          r[i] -= sign * (is_known(f, begin_with + i) ? known(f, a, begin_with + i) : mean(f, a, begin_with + i));
       }
-      if (singular) // what a solve has left of the balance of the star is shared by its cells
-        for (int k = 0; k < n; ++k) sent(begin + k, i) -= rest / n;
-      for (int j = 0; j < n; ++j) {
-        double x = sent(begin + j, i);
-        for (int k = 0; k < j; ++k) x -= L[j * n + k] * sent(begin + k, i);
-        sent(begin + j, i) = L[j * n + j] > 0 ? x / L[j * n + j] : 0;
+      for (int i = 0; i < Count; ++i) {
+        sent(begin + k, begin_with + i) = r[i];
+        rest[i] += r[i];
       }
-      for (int j = n - 1; j >= 0; --j) {
-        double x = sent(begin + j, i);
-        for (int k = j + 1; k < n; ++k) x -= L[k * n + j] * sent(begin + k, i);
-        sent(begin + j, i) = L[j * n + j] > 0 ? x / L[j * n + j] : 0;
-      }
+    }
+    for (int k = 0; singular && k < n; ++k) // what a solve has left of the balance of the star is shared by its cells
+      for (int i = 0; i < Count; ++i) sent(begin + k, begin_with + i) -= rest[i] / n;
+    for (int j = 0; j < n; ++j) {
+      double x[Count];
+      for (int i = 0; i < Count; ++i) x[i] = sent(begin + j, begin_with + i);
+      for (int k = 0; k < j; ++k)
+        for (int i = 0; i < Count; ++i) x[i] -= L[j * n + k] * sent(begin + k, begin_with + i);
+      for (int i = 0; i < Count; ++i) sent(begin + j, begin_with + i) = L[j * n + j] > 0 ? x[i] / L[j * n + j] : 0;
+    }
+    for (int j = n - 1; j >= 0; --j) {
+      double x[Count];
+      for (int i = 0; i < Count; ++i) x[i] = sent(begin + j, begin_with + i);
+      for (int k = j + 1; k < n; ++k)
+        for (int i = 0; i < Count; ++i) x[i] -= L[k * n + j] * sent(begin + k, begin_with + i);
+      for (int i = 0; i < Count; ++i) sent(begin + j, begin_with + i) = L[j * n + j] > 0 ? x[i] / L[j * n + j] : 0;
     }
   }
 
-  /// The moment of a facet with the function of its node a.
-  KOKKOS_FUNCTION double moment(const LO f, const int a, const int i) const
+  /// The moments of a facet with the function of its node a.
+  KOKKOS_FUNCTION void moments(const LO f, const int a, double (&m)[3]) const
   {
-    if (is_known(f, i)) return known(f, a, i);
     const LO node = in.facets.node(f, a);
-    double change = 0;
+    double change[3] = {};
     for (std::size_t k = around.row(node); k < around.row(node + 1); ++k)
       for (int side = 0; side < 2; ++side)
-        if (around.cell(k) == in.facets.cell(f, side)) change += (side == 0 ? 1 : -1) * sent(k, i);
-    return mean(f, a, i) + area(f) * change;
+        if (around.cell(k) == in.facets.cell(f, side))
+          for (int i = 0; i < 3; ++i) change[i] += (side == 0 ? 1 : -1) * sent(k, i);
+    for (int i = 0; i < 3; ++i) m[i] = is_known(f, i) ? known(f, a, i) : mean(f, a, i) + area(f) * change[i];
   }
 };
+
+} // namespace
+
+namespace
+{
+
+/// (facets) In one relation to their areas.
+DeviceView<double *> areas_of(const SpaceInput &in)
+{
+  const DeviceView<double *> areas("rpc::bound::areas", in.facets.size());
+  Kokkos::parallel_for(
+      "rpc::bound::areas", device_range(in.facets.size()), KOKKOS_LAMBDA(const LO f) {
+        const FacetFrame frame(in, f);
+        areas(f) = math::sqrt(frame.normal[0] * frame.normal[0] + frame.normal[1] * frame.normal[1] +
+                              frame.normal[2] * frame.normal[2]);
+      });
+  Kokkos::fence();
+  return areas;
+}
 
 } // namespace
 
@@ -193,7 +227,8 @@ Tractions equilibrated(const SpaceInput &in, const BoundaryTractions &boundary, 
       first,
       0,
       DeviceView<double *>(Kokkos::view_alloc("rpc::bound::matrix", Kokkos::WithoutInitializing), most),
-      DeviceView<double **>("rpc::bound::sent", around.cell.extent(0), 3)};
+      DeviceView<double **>("rpc::bound::sent", around.cell.extent(0), 3),
+      areas_of(in)};
   for (; stars.from < nodes; stars.from += batch)
     Kokkos::parallel_for("rpc::bound::balance_stars", device_range(end_of(stars.from) - stars.from), stars);
   // Moments of functions at other ranks' vertices are fetched, and so are tractions of other ranks' facets.
@@ -201,7 +236,9 @@ Tractions equilibrated(const SpaceInput &in, const BoundaryTractions &boundary, 
   const DeviceView<double **> served("rpc::bound::served_moments", of_vertices.extent(0), 3);
   Kokkos::parallel_for(
       "rpc::bound::serve_moments", device_range(static_cast<LO>(of_vertices.extent(0))), KOKKOS_LAMBDA(const LO k) {
-        for (int i = 0; i < 3; ++i) served(k, i) = stars.moment(of_vertices(k, 0), of_vertices(k, 1), i);
+        double m[3];
+        stars.moments(of_vertices(k, 0), of_vertices(k, 1), m);
+        for (int i = 0; i < 3; ++i) served(k, i) = m[i];
       });
   const DeviceView<double **> fetched = exchanges.of_vertices.fetched(served);
   const int per_facet = 3 * functions;
@@ -213,18 +250,19 @@ Tractions equilibrated(const SpaceInput &in, const BoundaryTractions &boundary, 
   Kokkos::parallel_for(
       "rpc::bound::tractions_from_moments", device_range(in.facets.size()), KOKKOS_LAMBDA(const LO f) {
         if (!facets.counts(f)) return;
-        for (int i = 0; i < 3; ++i) {
-          const std::size_t at = static_cast<std::size_t>(f) * per_facet + i;
-          if (stars.is_known(f, i)) {
-            for (int j = 0; j < functions; ++j) t(at + 3 * j) = load(f, j, i);
-            continue;
-          }
-          for (int a = 0; a < functions; ++a) {
-            const LO there = a < 3 ? row(f, a) : -1;
-            const double m = there >= 0 ? fetched(there, i) : stars.moment(f, a, i);
-            for (int j = 0; j < functions; ++j) t(at + 3 * j) += from(j, a) * m;
-          }
+        const std::size_t at = static_cast<std::size_t>(f) * per_facet;
+        for (int a = 0; a < functions; ++a) {
+          const LO there = a < 3 ? row(f, a) : -1;
+          double m[3];
+          if (there < 0)
+            stars.moments(f, a, m);
+          else
+            for (int i = 0; i < 3; ++i) m[i] = fetched(there, i);
+          for (int j = 0; j < functions; ++j)
+            for (int i = 0; i < 3; ++i) t(at + 3 * j + i) += from(j, a) * m[i];
         }
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; stars.is_known(f, i) && j < functions; ++j) t(at + 3 * j + i) = load(f, j, i);
       });
   const DeviceView<double **> served_tractions("rpc::bound::served_tractions", of_facets.extent(0), per_facet);
   Kokkos::parallel_for(

@@ -37,8 +37,8 @@ struct SpaceFacets {
 
   LO num_outer = 0; ///< facets of one cell of this rank, among them all on the boundary: the first ones
 
-  LO size() const { return static_cast<LO>(node.extent(0)); }
-  LO num_rings() const { return static_cast<LO>(num_ring_facets.extent(0)); }
+  KOKKOS_INLINE_FUNCTION LO size() const { return static_cast<LO>(node.extent(0)); }
+  KOKKOS_INLINE_FUNCTION LO num_rings() const { return static_cast<LO>(num_ring_facets.extent(0)); }
   KOKKOS_INLINE_FUNCTION std::size_t first_facet(const LO r) const { return first(r) + r; }
   KOKKOS_INLINE_FUNCTION int num_ring_cells(const LO r) const { return static_cast<int>(first(r + 1) - first(r)); }
   KOKKOS_INLINE_FUNCTION bool on_boundary(const LO facet) const { return cell(facet, 1) == none; }

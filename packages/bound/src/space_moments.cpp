@@ -71,12 +71,20 @@ struct MeanMoments {
       const int s = in.facets.ordinal(f, side);
       const AffineTetrahedron cell(in, c);
       double D[3][3], sigma[3][3];
-      for (int q = 0; q < static_cast<int>(in.tables.shape.extent(0)); ++q) {
-        if (q == 0 || in.reference.degree > 1) { // C eps is constant with order 1
-          gradient_in_space(
-              in, cell, c, u, [&](const int a, const int l) { return in.reference.side_gradient(s, q, a, l); }, D);
-          stress_of_gradient(in.lame(in.block(c), 0), in.lame(in.block(c), 1), D, sigma);
+      if (in.reference.degree == 1) { // C eps is constant
+        gradient_in_space(
+            in, cell, c, u, [&](const int a, const int l) { return in.reference.side_gradient(s, 0, a, l); }, D);
+        stress_of_gradient(in.lame(in.block(c), 0), in.lame(in.block(c), 1), D, sigma);
+        for (int i = 0; i < 3; ++i) {
+          const double t = sigma[i][0] * n[0] + sigma[i][1] * n[1] + sigma[i][2] * n[2];
+          for (int a = 0; a < nodes; ++a) mean(f, a, i) += in.tables.moment(0, a) / both * (toward > 0 ? 1 : -1) * t;
         }
+        continue;
+      }
+      for (int q = 0; q < static_cast<int>(in.tables.shape.extent(0)); ++q) {
+        gradient_in_space(
+            in, cell, c, u, [&](const int a, const int l) { return in.reference.side_gradient(s, q, a, l); }, D);
+        stress_of_gradient(in.lame(in.block(c), 0), in.lame(in.block(c), 1), D, sigma);
         const double w = in.reference.side_weight(q) / both * (toward > 0 ? 1 : -1);
         for (int a = 0; a < nodes; ++a)
           for (int i = 0; i < 3; ++i)

@@ -47,7 +47,7 @@ struct SpaceInput {
   LO num_owned_cells = 0;       ///< the first ones
   bool of_hexahedra = false;    ///< whether the tetrahedra are parts of hexahedra
 
-  LO num_cells() const { return static_cast<LO>(cells.extent(0)); }
+  KOKKOS_INLINE_FUNCTION LO num_cells() const { return static_cast<LO>(cells.extent(0)); }
   KOKKOS_INLINE_FUNCTION bool loaded() const { return force[0] != 0 || force[1] != 0 || force[2] != 0; }
 };
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "facet_polynomials.hpp"
-#include "ring_solves.hpp"
 #include "rpc/mesh/box.hpp"
 #include "space_cells.hpp"
+#include "space_descent.hpp"
 
 #include <Tpetra_Core.hpp>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <memory>
 #include <random>
+#include <vector>
 
 // Tractions on tetrahedra of random shapes: what is made of them is in balance, by integrals over facets that the code under test does not use.
 
@@ -40,6 +41,11 @@ protected:
   {
     order = GetParam();
     functions = FacetPolynomials::count(3, order);
+    take({3, 2, 2}, 1);
+  }
+  /// @param distorted  by how much inner vertices move: 0 or 1, and only with elements of order 1
+  void take(const std::vector<int> &cells, const double distorted)
+  {
     mesh::Element element;
     element.dim = 3;
     element.order = order;
@@ -47,14 +53,14 @@ protected:
     mesh::BoxOptions box;
     box.lower = {0, 0, 0};
     box.upper = {2, 1, 1};
-    box.cells = {3, 2, 2};
+    box.cells = cells;
     box.element = element;
     const auto mesh = std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm()));
     const auto x = mesh->coords;
     for (LO n = 0; n < mesh->num_local_nodes(); ++n) { // the sides stay in their planes
       const double move = 0.1 * x(n, 0) * (2 - x(n, 0)) * x(n, 1) * (1 - x(n, 1)) * x(n, 2) * (1 - x(n, 2));
       if (order == 1)
-        for (int i = 0; i < 3; ++i) x(n, i) += 10 * move * draw();
+        for (int i = 0; i < 3; ++i) x(n, i) += 10 * distorted * move * draw();
     }
     mesh->box = nullptr;
     d = fem::discretize(mesh);
@@ -162,16 +168,15 @@ TEST_P(Body, RingsAreSymmetricAndAnswerWithTheInverseOfTheirEnergies)
   const SpaceForms forms = cell_forms(in, u);
   const SpaceExchanges exchanges = space_exchanges(*d.mesh, in.facets);
   const RingSolves rings(in, boundary, forms, exchanges);
-  const DeviceView<float **> scratch("scratch", in.num_cells(), in.reference.tractions);
-  const Tractions g = drawn(), h = drawn(), z("z", g.extent(0)), y("y", g.extent(0)), Az("Az", g.extent(0));
+  const Tractions g = drawn(), h = drawn(), z("z", g.extent(0)), y("y", g.extent(0));
+  const DeviceView<float *> Az("Az", g.extent(0));
   rings.apply(g, z);
   rings.apply(h, y);
-  double gy = 0, hz = 0, zAz = 0, gz = 0;
-  add_up(in, forms, z, false, scratch, Az);
+  double gy = 0, hz = 0, gz = 0;
+  const double zAz = derivative(in, forms, z, false, Az);
   for (std::size_t k = 0; k < z.extent(0); ++k) {
     gy += g(k) * y(k);
     hz += h(k) * z(k);
-    zAz += z(k) * Az(k);
     gz += g(k) * z(k);
   }
   EXPECT_NEAR(gy, hz, 1e-6 * (std::abs(gy) + gz)); // the preconditioner is symmetric, but for single precision
@@ -233,9 +238,9 @@ TEST_P(Body, TheEnergyOfTractionsIsThatOfTheirStress)
   const SpaceForms forms = cell_forms(in, u);
   const SpaceExchanges exchanges = space_exchanges(*d.mesh, in.facets);
   const RingSolves rings(in, boundary, forms, exchanges);
-  const DeviceView<float **> scratch("scratch", in.num_cells(), in.reference.tractions);
   const DeviceView<double *> of_cell("of_cell", in.num_cells());
-  const Tractions g = drawn(), z("z", g.extent(0)), at("at", g.extent(0)), slope("slope", g.extent(0));
+  const Tractions g = drawn(), z("z", g.extent(0)), at("at", g.extent(0));
+  const DeviceView<float *> slope("slope", g.extent(0));
   rings.apply(g, z);
   // In balance with the body force: tractions of diag(-f_i x_i), whose moments about the centre vanish on each cell, are continuous.
   for (LO f = 0; f < in.facets.size(); ++f) {
@@ -259,12 +264,54 @@ TEST_P(Body, TheEnergyOfTractionsIsThatOfTheirStress)
     const StressDifference left = stress_difference(in, d.mesh->comm(), forms, at, u, of_cell);
     energy[k] = left.energy;
     EXPECT_LT(left.imbalance, 1e-12 * left.force);
-    if (k == 1) add_up(in, forms, at, true, scratch, slope);
+    if (k == 1) derivative(in, forms, at, true, slope);
     for (std::size_t i = 0; i < at.extent(0); ++i) at(i) += z(i);
   }
   double along = 0;
   for (std::size_t i = 0; i < at.extent(0); ++i) along += slope(i) * z(i);
   EXPECT_NEAR((energy[2] - energy[0]) / 2, along, 1e-6 * (std::abs(along) + energy[1])); // A is in single precision
+
+  // A descent lowers it by what it says, and cells stay in balance.
+  SpaceDescent descent(in, forms, rings, d.mesh->comm(), at);
+  double before = stress_difference(in, d.mesh->comm(), forms, at, u, of_cell).energy;
+  for (int step = 0; step < 4; ++step) {
+    const double fall = descent.step();
+    const StressDifference left = stress_difference(in, d.mesh->comm(), forms, at, u, of_cell);
+    EXPECT_GT(fall, 0);
+    EXPECT_NEAR(before - left.energy, fall, 1e-5 * (fall + 1e-2 * before)) << step;
+    EXPECT_LT(left.imbalance, 1e-12 * left.force);
+    before = left.energy;
+  }
+}
+
+TEST_P(Body, EnergiesByKindsOfCellsAreThoseOfTheirStresses)
+{
+  EXPECT_EQ(cell_forms(in, Vector(d.owned_dofs)).exact.extent(0), 0U); // no cell is like another one
+  take({6, 4, 4}, 0);
+  Vector u(d.owned_dofs);
+  u.randomize();
+  SpaceForms forms = cell_forms(in, u);
+  if (order == 2) {
+    EXPECT_EQ(forms.exact.extent(0), 0U);
+    return;
+  }
+  ASSERT_GT(forms.exact.extent(0), 0U);
+  const Tractions t = drawn();
+  const DeviceView<double *> by_kinds("by_kinds", in.num_cells()), integrated("integrated", in.num_cells());
+  const StressDifference a = stress_difference(in, d.mesh->comm(), forms, t, u, by_kinds);
+  forms.exact = {};
+  const StressDifference b = stress_difference(in, d.mesh->comm(), forms, t, u, integrated);
+  EXPECT_NEAR(a.energy, b.energy, 1e-13 * b.energy);
+  EXPECT_NEAR(a.force, b.force, 1e-13 * b.force);
+  EXPECT_NEAR(a.imbalance, b.imbalance, 1e-12 * b.imbalance);
+  const double mean = b.energy / in.num_cells();
+  for (LO c = 0; c < in.num_cells(); ++c) EXPECT_NEAR(by_kinds(c), integrated(c), 1e-12 * mean) << "cell " << c;
+  // Neither with a body force, which is no stress of the kind, nor in parts of hexahedra, whose C eps(u) is not constant.
+  in.of_hexahedra = true;
+  EXPECT_EQ(cell_forms(in, u).exact.extent(0), 0U);
+  in.of_hexahedra = false;
+  in.force[1] = 1;
+  EXPECT_EQ(cell_forms(in, u).exact.extent(0), 0U);
 }
 
 } // namespace
