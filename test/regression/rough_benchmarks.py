@@ -13,6 +13,7 @@ try:
 except ImportError:
     numpy = None
 FOLDER = SOURCE / "test" / "benchmark"
+MPIEXEC = os.environ.get("RPC_MPIEXEC", shutil.which("mpiexec"))  # empty of a program without MPI
 
 
 class RoughBenchmarks(RpcTestCase):
@@ -26,12 +27,12 @@ class RoughBenchmarks(RpcTestCase):
         self.assertEqual(done.stdout.count("  patches  "), 2, done.stdout)
         self.assertNotIn("NOT CONV", done.stdout)
 
-    @unittest.skipUnless(shutil.which("mpiexec"), "there is no mpiexec")
+    @unittest.skipUnless(MPIEXEC, "there is no MPI")
     def test_the_large_layer_runs_on_two_ranks(self):
         areas = []
         for ranks in ("1", "2"):
             os.environ["MPIEXEC"] = f"{sys.executable} -B {self.folder / 'launch.py'}"  # notes how it is called
-            (self.folder / "launch.py").write_text("import os, sys\nprint('rough_layer: launched as', *sys.argv[1:3], flush=True)\nos.execvp('mpiexec', ['mpiexec', *sys.argv[1:]])\n")
+            (self.folder / "launch.py").write_text(f"import os, sys\nprint('rough_layer: launched as', *sys.argv[1:3], flush=True)\nos.execvp({MPIEXEC!r}, [{MPIEXEC!r}, *sys.argv[1:]])\n")
             self.addCleanup(os.environ.pop, "MPIEXEC", None)
             done = self.start("bash", FOLDER / "rough_layer.sh", f"--ranks={ranks}", os.path.abspath(PROGRAM), "8,8,4", self.folder / "layer")
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
