@@ -63,7 +63,8 @@ SplitHexahedra split_hexahedra(const fem::Discretization &d)
   SplitHexahedra split;
   split.corner = HostView<signed char *[4]>("rpc::bound::corner", parts_of_cell * count);
   split.smallest = std::numeric_limits<double>::infinity();
-  const HostView<LO **> cells("rpc::bound::split", parts_of_cell * count, 4);
+  m->cells = DeviceView<LO **>("rpc::bound::split", parts_of_cell * count, 4);
+  const auto cells = Kokkos::create_mirror_view(m->cells);
   const HostView<int *> blocks("rpc::bound::block", parts_of_cell * count);
   const HostView<GO *> ids("rpc::bound::cell_id", parts_of_cell * from.num_owned_cells);
   std::vector<std::array<GO, 8>> ids_of(count);
@@ -93,7 +94,7 @@ SplitHexahedra split_hexahedra(const fem::Discretization &d)
     split.smallest = std::min(split.smallest, sum > 0 ? parts_of_cell * least / sum : -1);
   }
   split.smallest = min_all(from.comm(), split.smallest);
-  m->cells = to_device(cells);
+  Kokkos::deep_copy(m->cells, cells);
   m->block = to_device(blocks);
   m->cell_id = mesh::Ids(ids);
   const auto &facets = m->element.facets();
