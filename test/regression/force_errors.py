@@ -155,7 +155,7 @@ class ForceErrors(WrittenDeckTestCase):
     @unittest.skipIf(RANKS > 1, "once is enough")
     def test_guaranteed_bounds_are_refused(self):
         guaranteed = "Error Bound: guaranteed"
-        decks = [(written(TOOL, ADAPT=guaranteed, CENTRE="[0.9, 4.0], Force Y: -1.0"), "a force moves the obstacle"),
+        decks = [(written(TOOL, ADAPT=guaranteed, CENTRE="[0.9, 4.0], Force Y: -1.0"), "a force or a spring moves the obstacle"),
                  (written(PUNCH, TOP="X: 0.0, Force Y: -1.0").replace("Target Relative Error: TARGET", guaranteed), '"Rigid->top" holds its side rigid'),
                  (written(PUNCH, TOP="X: 0.0, Y: -0.1, Rotation Z: 0.0").replace("Target Relative Error: TARGET", guaranteed), '"Rigid->top" holds its side rigid'),
                  (written(PUNCH, TOP="Force Y: -1.0").replace("Rigid", "Dirichlet").replace("Target Relative Error: TARGET", guaranteed), '"Dirichlet->top" is moved by a force')]

@@ -275,18 +275,15 @@ void add_searched(const StepSolution &before, StepSolution &s)
   s.raised_penalties = before.raised_penalties;
 }
 
-/// Where searches for the obstacle have not ended.
-/// @param jumps  whether they have come down to one place, at which the force that it takes jumps
+/// Searches for the obstacle have not ended. @param jumps  whether the force that it takes jumps at the place that they have come down to
 void give_up_search(const Point &way, const bool jumps, StepSolution &s)
 {
   s.uzawa.converged = false;
   std::ostringstream reason;
-  reason << "the obstacle that a force or a spring moves does not come to rest: ";
-  if (jumps)
-    reason << "the force that it takes jumps at one place, as at a kink of its surface";
-  else
-    reason << "of " << step_rules.most_searches << " searches none has brought it nearer";
-  reason << ", and the last search has moved it by " << length(way);
+  reason << "the obstacle that a force or a spring moves does not come to rest: "
+         << (jumps ? "the force that it takes jumps at one place, as at a kink of its surface"
+                   : "of " + std::to_string(step_rules.most_searches) + " searches none has brought it nearer")
+         << ", and the last search has moved it by " << length(way);
   s.uzawa.reason = reason.str();
 }
 
