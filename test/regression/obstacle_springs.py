@@ -95,6 +95,13 @@ class ObstacleSprings(WrittenDeckTestCase):
         self.assertAlmostEqual(found["obstacle_spring_force"][0], -32.5, delta=1e-6)
         self.assertAlmostEqual(found["obstacle_displacement"][0], 0.325, delta=1e-8)
 
+    def test_the_way_of_a_tool_to_its_first_touch_is_no_slip_beside_a_stiff_spring_across(self):
+        roller = "Type: sphere, Radius: 1.0, Centre: [0.99, 2.5], Force Y: -60.0"
+        held, on_spring_across = (self.solve(name, written(BOX, roller + more, "Q1", law=RUBS)) for name, more in (("held", ""), ("sprung", ", Stiffness X: 1.0e+9")))
+        for found, expected in zip(on_spring_across["contact_force"], held["contact_force"]):
+            self.assertAlmostEqual(found, expected, delta=1e-6)
+        self.assertAlmostEqual(on_spring_across["energy_J"], held["energy_J"], delta=1e-8)
+
     def test_a_force_that_jumps_at_one_place_ends_the_search_there(self):
         # One node lies in a groove whose walls push the tool to and fro: the force of the spring is nowhere that of the node.
         heights = [(0.01 * i, 0.105 + 0.005 * abs(i - 5)) for i in range(11)]

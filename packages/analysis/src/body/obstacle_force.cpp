@@ -30,12 +30,12 @@ double given_force(const contact::Obstacle &obstacle, const int c)
   return obstacle.force[c] ? (*obstacle.force[c])({}) : 0;
 }
 
-/// How far along a force its springs let the obstacle go where nothing touches [m]; infinite without a spring.
-double way_to_springs(const contact::Obstacle &obstacle, const double force)
+/// How far along a force the springs that it stretches let the obstacle go where nothing touches [m]; infinite without one.
+double way_to_springs(const contact::Obstacle &obstacle, const Point &force)
 {
   double way = std::numeric_limits<double>::infinity();
-  for (const double stiffness : obstacle.stiffness)
-    if (stiffness > 0) way = std::min(way, force / stiffness);
+  for (int c = 0; c < 3; ++c)
+    if (force[c] != 0 && obstacle.stiffness[c] > 0) way = std::min(way, length(force) / obstacle.stiffness[c]);
   return way;
 }
 
@@ -124,7 +124,7 @@ Point approach(const fem::Discretization &d, const Model &now)
     for (int c = 0; c < d.dim(); ++c) place[c] = x(n, c);
     if (const auto distance = contact::distance_along(pressed.obstacle, place, towards)) way = std::min(way, *distance);
   }
-  way = std::min(min_all(d.mesh->comm(), way), way_to_springs(pressed.obstacle, size));
+  way = std::min(min_all(d.mesh->comm(), way), way_to_springs(pressed.obstacle, along));
   if (way == nowhere) {
     std::ostringstream text;
     text << "contact: the force of \"" << pressed.path << "->Obstacle\" moves the obstacle along (" << along[0] / size
