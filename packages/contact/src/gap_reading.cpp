@@ -28,18 +28,35 @@ bool GapReading::is_off(const LO f) const
   return furthest > off * (most - least);
 }
 
+namespace
+{
+
+/// The share of a facet of order 1 that belongs to a point of its lattice, over that of a corner: the trapezoidal rule.
+int share_of_sample(const int nodes, const FacetShape &shape)
+{
+  constexpr double rounding = 1e-12;
+  const auto away =
+      std::count_if(shape.value, shape.value + nodes, [](const double value) { return value < rounding; });
+  const bool inside = away == 0, corner = away == nodes - 1;
+  if (corner) return 1;
+  if (nodes == 3) return inside ? 6 : 3;
+  return nodes == 4 && inside ? 4 : 2;
+}
+
+} // namespace
+
 double GapReading::work_of_interpolation(const LO f) const
 {
-  double work = 0, radii = 0;
+  double work = 0, weights = 0;
   for (const FacetShape &shape : fine) {
     const FacetSample sample = sample_at(rows, f, shape, options, 0);
-    const double radius = axisymmetric ? sample.place[0] : 1;
+    const double weight = share_of_sample(rows.nodes, shape) * (axisymmetric ? sample.place[0] : 1);
     const double off = rows.interpolated(f, shape, FacetRows::penetration) - penetration_at_sample(f, shape, sample);
     if (!std::isfinite(off)) return 0; // the obstacle is missed
-    work += radius * rows.interpolated(f, shape, FacetRows::pressure) * off;
-    radii += radius;
+    work += weight * rows.interpolated(f, shape, FacetRows::pressure) * off;
+    weights += weight;
   }
-  return radii > 0 ? work * rows.area(f) / radii : 0;
+  return weights > 0 ? work * rows.area(f) / weights : 0;
 }
 
 Foundation GapReading::law(const Point &x, const double dent, const double layer) const

@@ -118,6 +118,9 @@ TEST(BetweenNodes, OfASmoothGapTheWorkOfThePressureOverItsInterpolantsErrorIsTol
   side.gap = ScalarField("parabola", [=](const Point &x) { return c * x[0] * x[0]; });
   EXPECT_NEAR(Looked({2, 1}, side, p).result.between.interpolation_work / (-p * 2 * c * h * h / 6), 1, 0.01);
   EXPECT_EQ(Looked({2, 2}, side, p).result.between.interpolation_work, 0);
+  for (const auto shape :
+       {mesh::Shape::tensor, mesh::Shape::simplex}) // in space it is 1 m wide, and there are fewer samples
+    EXPECT_NEAR(Looked({3, 1, shape}, side, p).result.between.interpolation_work / (-p * 2 * c * h * h / 6), 1, 0.07);
   EXPECT_EQ(Looked({2, 1}, side).result.between.interpolation_work, 0); // nothing touches
 }
 
