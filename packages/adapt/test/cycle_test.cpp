@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rpc/adapt/cycle.hpp"
+#include "cycles.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -14,18 +14,8 @@ namespace
 using namespace rpc;
 using adapt::Cycle;
 using adapt::observed_errors;
-
-Cycle mesh(const double estimate, const double force, const double pressure)
-{
-  Cycle c;
-  c.estimate = estimate;
-  c.energy = 1;
-  c.energy_norm_squared = 2;
-  c.contact.force = {0, force, 0};
-  c.contact.max_pressure = pressure;
-  c.contact.contact_length = 1;
-  return c;
-}
+using test::mesh;
+using test::open_mesh;
 
 TEST(ErrorBars, OfOneMeshAreNone)
 {
@@ -329,17 +319,6 @@ TEST(ErrorBars, OfNoPenetrationAreNoneWhereThePressureMayReachTheYieldStress)
   EXPECT_FALSE(std::isnan(observed_errors(cycles).max_penetration));
 }
 
-/// A mesh on which nothing touches. @param left  the smallest gap
-Cycle open_mesh(const double estimate, const double left)
-{
-  Cycle c = mesh(estimate, 0, 0);
-  c.contact.contact_length = 0;
-  c.reactions = {{0, 10, 0}};
-  c.smallest_gap = left;
-  c.max_displacement = 1;
-  return c;
-}
-
 TEST(ErrorBars, OfABodyThatDoesNotTouchAreZeroWhereItsGapIsKnownBetterThanThat)
 {
   const std::vector<Cycle> open = {open_mesh(0.1, 0.031), open_mesh(0.02, 0.03)};
@@ -391,76 +370,6 @@ TEST(ErrorBars, OfNoPenetrationAreNoneWhereABodyMayTouchWhatGivesWay)
     EXPECT_EQ(observed_errors(cycles).max_penetration, 0) << from;
     cycles.back().smallest_gap = cycles.front().smallest_gap = 0.0195;
   }
-}
-
-adapt::CoarserHistory coarser_history(const double largest_estimate, const Cycle &last)
-{
-  adapt::CoarserHistory coarser;
-  coarser.last = last;
-  coarser.largest_estimate = largest_estimate;
-  return coarser;
-}
-
-TEST(ErrorBarsOfHistories, CountWhatMeshesOfEarlierStepsHaveLeft)
-{
-  // The meshes of the last step agree: all of them start from the same dents.
-  const std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10, 30)};
-  const auto own = observed_errors(cycles);
-  const auto coarser = mesh(0.08, 9, 28);
-  const adapt::EarlierSteps earlier{true, 0.2, 2};
-  auto errors = observed_errors(cycles, coarser_history(0.6, coarser), earlier);
-  EXPECT_NEAR(errors.contact_force, own.contact_force + 1 / (0.6 / 0.2 - 1), 1e-12);
-  EXPECT_NEAR(errors.max_pressure, own.max_pressure + 2 / (0.6 / 0.2 - 1), 1e-12);
-  EXPECT_NEAR(errors.energy, own.energy + 0.2 * 0.2, 1e-12); // where the two histories agree by chance
-  EXPECT_TRUE(std::isnan(errors.contact_pressure));
-  // Earlier steps of the run itself may have had the coarser meshes.
-  errors = observed_errors(cycles, coarser_history(0.1, coarser), earlier);
-  EXPECT_NEAR(errors.contact_force, own.contact_force + 1 / 0.5, 1e-12);
-  // Errors as large in both tell little; forces that agree by chance have what the load, moved by 2 m, makes of the energy.
-  errors = observed_errors(cycles, coarser_history(0.2, coarser), earlier);
-  EXPECT_NEAR(errors.contact_force, own.contact_force + 1 / 0.1, 1e-12);
-  errors = observed_errors(cycles, coarser_history(0.6, cycles.front()), earlier);
-  EXPECT_NEAR(errors.contact_force, own.contact_force + 2 * 0.2 * 0.2 / 2, 1e-12);
-  // A jump of the gap within a facet that an earlier step has dented, and that bears nothing any more.
-  errors = observed_errors(cycles, coarser_history(0.6, cycles.front()), {true, 0.2, 2, {0.7, 0.3}});
-  EXPECT_NEAR(errors.contact_force, own.contact_force + 0.7, 1e-12);
-  EXPECT_NEAR(errors.energy, own.energy + 0.3, 1e-12);
-}
-
-TEST(ErrorBarsOfHistories, OfABodyThatDoesNotTouchCountWhatEarlierStepsLeaveOfItsGap)
-{
-  const std::vector<Cycle> cycles = {open_mesh(0.1, 0.03), open_mesh(0.02, 0.03)};
-  const adapt::EarlierSteps earlier{true, 0.2, 2};
-  auto errors = observed_errors(cycles, coarser_history(0.6, open_mesh(0.08, 0.029)), earlier);
-  EXPECT_EQ(errors.contact_force, 0);
-  EXPECT_EQ(errors.max_pressure, 0);
-  EXPECT_EQ(errors.contact_length, 0);
-  errors = observed_errors(cycles, coarser_history(0.6, open_mesh(0.08, 0.06)), earlier); // 0.03 / (0.6 / 0.2 - 1) more
-  EXPECT_GT(errors.contact_force, 0);
-  EXPECT_EQ(errors.unknown.at("max_pressure"), adapt::may_touch);
-  EXPECT_TRUE(std::isnan(errors.contact_length));
-}
-
-TEST(ErrorBarsOfHistories, AreThoseOfTheLastStepWhereNothingIsLeft)
-{
-  const std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10.1, 30)};
-  const adapt::EarlierSteps earlier{false, 0.2, 2};
-  const auto errors = observed_errors(cycles, coarser_history(0.6, mesh(0.08, 5, 28)), earlier);
-  EXPECT_EQ(errors.contact_force, observed_errors(cycles).contact_force);
-  // One mesh in the last step: a coarser one shows the change.
-  const auto alone = observed_errors({cycles.back()}, coarser_history(0.6, mesh(0.1, 10, 28)), earlier);
-  EXPECT_NEAR(alone.contact_force, 0.1 / (0.1 / 0.02 - 1), 1e-12);
-}
-
-TEST(ErrorBarsOfHistories, AreNoneWithoutACoarserMesh)
-{
-  adapt::CoarserHistory none;
-  none.missing = "there is no coarser mesh";
-  const std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10, 30)};
-  const auto errors = observed_errors(cycles, none, {true, 0.2, 2});
-  EXPECT_TRUE(std::isnan(errors.energy) && std::isnan(errors.contact_force));
-  EXPECT_NE(errors.unknown.at("energy_J").find("earlier steps"), std::string::npos);
-  EXPECT_EQ(observed_errors({cycles.back()}, none, {false, 0.2, 2}).unknown.at("energy_J"), adapt::one_mesh);
 }
 
 } // namespace
