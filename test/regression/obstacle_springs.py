@@ -102,6 +102,13 @@ class ObstacleSprings(WrittenDeckTestCase):
             self.assertAlmostEqual(found, expected, delta=1e-6)
         self.assertAlmostEqual(on_spring_across["energy_J"], held["energy_J"], delta=1e-8)
 
+    def test_a_tool_that_springs_hold_before_it_touches_strains_nothing(self):
+        pressed = plate(1.1, "Force X: 3.0", "Stiffness X: 50.0", "Force Y: -20.0", "Stiffness Y: 300.0")
+        found = self.solve("hangs", written(BOX, pressed, "Q1", law=RUBS))
+        self.assertEqual(found["contact_force"], [0, 0])
+        for moved, expected in zip(found["obstacle_displacement"], (3 / 50, -20 / 300)):
+            self.assertAlmostEqual(moved, expected, delta=SAME)
+
     def test_a_force_that_jumps_at_one_place_ends_the_search_there(self):
         # One node lies in a groove whose walls push the tool to and fro: the force of the spring is nowhere that of the node.
         heights = [(0.01 * i, 0.105 + 0.005 * abs(i - 5)) for i in range(11)]

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -235,6 +236,9 @@ Step Problem::step(const double t, const MultiVector *const dents, const Memory 
   step.support = support_of(d, free_parts_, step, now);
   if (before) step.energies_before = before->energy_scale;
   step.obstacle = moved;
+  // Where springs bear all of a force, what is left of the body's energies is rounding of theirs.
+  constexpr double rounding = std::numeric_limits<double>::epsilon();
+  step.energies_before = std::max(step.energies_before, rounding * spring_energy_of_obstacle(*this, step, {}));
   return step;
 }
 
