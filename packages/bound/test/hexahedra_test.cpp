@@ -166,6 +166,29 @@ TEST(Hexahedra, HaveOneDisplacementOnBothSidesOfAFacetAndAFlatOneOnContactSides)
   EXPECT_EQ(flat, 8);
 }
 
+TEST(Hexahedra, HaveDerivativesThatAreThoseOfTheirDisplacement)
+{
+  const Block b(true);
+  const FieldOfHexahedra field = field_of_hexahedra(b.in, *b.u);
+  constexpr double step = 1e-3; // of cubic polynomials central differences are off by its square
+  int flat = 0;
+  for (LO c = 0; c < b.in.num_cells(); ++c) {
+    for (int e = 0; e < 6; ++e) flat += b.in.flat(c, e, 0) >= 0;
+    double value[3], H[3][3], unused[3][3];
+    field.at(c, {0.1, 0.2, 0.3, 0.4}, value, H);
+    for (int l = 0; l < 3; ++l) {
+      double at[2][4] = {{0.1, 0.2, 0.3, 0.4}, {0.1, 0.2, 0.3, 0.4}}, moved[2][3];
+      for (int k = 0; k < 2; ++k) {
+        at[k][l + 1] += k == 0 ? step : -step;
+        at[k][0] -= k == 0 ? step : -step;
+        field.at(c, at[k], moved[k], unused);
+      }
+      for (int i = 0; i < 3; ++i) EXPECT_NEAR(H[i][l], (moved[0][i] - moved[1][i]) / (2 * step), 1e-4) << "cell " << c;
+    }
+  }
+  EXPECT_GT(flat, 0);
+}
+
 TEST(Hexahedra, CountTheWorkOfLoadsWithTheDisplacementOnFaces)
 {
   // Against integrals of the displacement itself; the derivatives of the energy likewise.
