@@ -129,6 +129,9 @@ struct CostModel {
   Rule<double> entry{8e-9, "cost.entry", "an entry of K in a CG iteration [s]", "iterations on one core"};
   Rule<double> repeated_entry{1e-9, "cost.repeated_entry", "such an entry where rows of K repeat [s]", "within a half"};
   Rule<double> repeated_row{70e-9, "cost.repeated_row", "a row of K where rows repeat [s]", "within a half"};
+  Rule<double> entry_against_factor{
+      2e-9, "cost.entry_against_factor", "a repeated entry against a factor in 2D [s]",
+      "vectors count for more there; without it plane Q1 with nu = 0.4999 takes 2.5 times as long"};
   Rule<double> gpu{50, "cost.gpu", "times as fast on a GPU as on a core [-]", "an H100"};
   Rule<double> launches{2e-3, "cost.launches", "of a cycle on a GPU at least [s]", "an H100"};
   // MUMPS, of 1e7 to 1e11 multiplications: within 15 % of the times.
