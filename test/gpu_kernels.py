@@ -33,7 +33,7 @@ def install(folder):
 def compiled(source, options):
     """What nvcc says of a source, if it is no warning of another kind; empty: it compiles."""
     home = pathlib.Path(shutil.which(options.nvcc)).resolve().parent.parent
-    packages = [f"-I{folder}/include" for folder in (ROOT / "packages").iterdir()]
+    packages = [f"-I{ROOT.joinpath(*source.parts[:3])}", *(f"-I{folder}/include" for folder in (ROOT / "packages").iterdir())]  # its package's src/ first
     systems = [options.trilinos / "include", *options.include, home / "include", home / "include" / "cccl"]
     command = [options.nvcc, "-x", "cu", *packages, *(word for folder in systems for word in ("-isystem", str(folder))), "-DNDEBUG", '-DRPC_VERSION=""', "-O1",
                "-std=c++17", "-expt-extended-lambda", f"-arch={options.arch}", "--Werror", "cross-execution-space-call", "-ptx", "-o", os.devnull, str(source)]

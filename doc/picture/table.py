@@ -28,7 +28,7 @@ MEANING = [
     (".*_displacement_[xyz]|max_(displacement|penetration|dent|slip)", "{0}", "m"), (".*_reaction_[xyz]", "{0}", "{force}"),
     ("energy_J", "energy", "{energy}"), ("relative_estimate", "estimated relative error", ""), ("dofs", "degrees of freedom", ""), ("share_of_contact", "share of what is in contact", ""),
     ("max_(pressure|shear|von_mises)", "{0}", "Pa"), (".*_length", "{0}", "m"), (".*_area", "{0}", "m^2"),
-    ("dent_volume", "{0}", "{volume}"), ("seconds", "wall-clock time", "s"),
+    ("dent_volume", "{0}", "{volume}"), ("patches", "number of patches of contact", ""), ("largest_patch", "{0}", "{extent}"), ("mean_gap", "{0}", "m"), ("seconds", "wall-clock time", "s"),
     ("work|dissipated_by_friction|.*_energy|energy_imbalance", "{0}", "{energy}")]
 
 
@@ -152,7 +152,7 @@ class Table:
         plane = "contact_length" in self.columns
         # Contact sides of plane bodies and of those of revolution have the same columns.
         force = "N/m, of revolution N" if self.kind == "contact" and "area" not in self.columns else "N/m" if plane else "N"
-        units = {"force": force, "energy": "J/m" if plane else "J", "volume": "m^2" if plane else "m^3"}
+        units = {"force": force, "energy": "J/m" if plane else "J", "volume": "m^2" if plane else "m^3", "extent": "m" if plane else "m^2"}
         away = [f"{axis} {'-' if at > 0 else '+'} {abs(at):.4g}" if at else axis for axis, at in zip(axes, centre or [0] * len(axes))]
         if len(axes) > 1:
             squares = " + ".join(f"({text})^2" if " " in text else f"{text}^2" for text in away)

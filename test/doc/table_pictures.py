@@ -215,7 +215,7 @@ class Diagrams(RpcTestCase):
         for name in ("shear.contact.csv", "shear.history.csv", "beam_adaptive.json"):  # units are told of all but of numbers
             table = Table(str(self.folder / "out" / name))
             bare = [column for column in table.names() if not table.is_text(column) and "[" not in table.name_of(column)]
-            self.assertEqual(set(bare) - {"friction_used", "time", "newton_iterations", "linear_iterations", "parts", "converged", "max_strain",
+            self.assertEqual(set(bare) - {"friction_used", "time", "newton_iterations", "linear_iterations", "parts", "patches", "converged", "max_strain",
                                           "dofs", "relative_estimate"}, set(), name)
 
     def test_several_files_have_a_legend(self):
