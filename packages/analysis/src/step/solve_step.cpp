@@ -204,7 +204,7 @@ int refine(const Iterate &iterate, Vector &u, SolverState &state)
   Vector F(u.getMap()), G(u.getMap()), move(u.getMap());
   iterate.gradient(u, F);
   iterate.active_set_gradient(u, F, G); // (5.6)
-  if (!(G.norm2() > 0) || !state.linear().solve(G, move, double(solver::newton_rules.forcing)).converged) return 0;
+  if (!(G.norm2() > 0) || !state.linear().solve(G, move, double(step_rules.refinement)).converged) return 0;
   u.update(-1., move, 1.);
   return 1;
 }

@@ -72,7 +72,7 @@ std::vector<Halving> halving_by(const SizeTree<dim> &size, const Mesh &mesh, con
 bool adds_little(const Mesh &mesh)
 {
   const auto nodes = [](const Mesh &of) { return static_cast<double>(of.owned_nodes->getGlobalNumElements()); };
-  return mesh.parents && nodes(*mesh.parents->mesh) > coarsening_rules.most_kept * nodes(mesh);
+  return mesh.parents && nodes(mesh) < coarsening_rules.least_added * nodes(*mesh.parents->mesh);
 }
 
 /// A mesh's grandparents as its parents.

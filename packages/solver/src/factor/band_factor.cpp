@@ -77,12 +77,14 @@ BandFactor::BandFactor(const int size, const SymmetricEntries &entries, std::vec
 
 FactorCost BandFactor::cost_of(const double size, const double width)
 {
+  const double operation = width > cost_model.wide ? cost_model.wide_band : cost_model.narrow_band;
   FactorCost cost;
   cost.operations = size * width * width;
   cost.entries = size * (width + 1);
   cost.bytes = sizeof(double) * cost.entries;
-  cost.seconds = cost_model.band * cost.operations + cost_model.band_entry * cost.entries;
-  cost.seconds_of_solve = cost.seconds_of_column = cost_model.band_entry_in_solve * cost.entries;
+  cost.seconds = operation * cost.operations + cost_model.band_entry * cost.entries;
+  cost.seconds_of_solve = cost.seconds_of_column =
+      cost_model.band_row_in_solve * size + cost_model.band_entry_in_solve * cost.entries;
   return cost;
 }
 

@@ -79,6 +79,7 @@ struct StepRules {
                             "iterations back to compare with where friction's bounds follow [-]; off: 1",
                             "accelerated sequences do not fall at each step; not measured"};
   Rule<double> of_rounding{10, "step.of_rounding", "unbalanced forces over what rounding makes, changes of dents over Uzawa's tolerance: the end is due to it [-]", "robustness.md"};
+  Rule<double> refinement{1e-4, "step.refinement", "residual of the solve that refines [-]", "1e-2 leaves a strip that bends far a second step"};
   // Load steps
   Rule<int> most_searches{8, "step.most_searches", "solves for the dents that points meet [-]", "two to four are needed"};
   Rule<int> most_attempts{5, "step.most_attempts",

@@ -142,10 +142,12 @@ struct CostModel {
   Rule<double> columns_for_one{12, "cost.columns_for_one", "columns at contact nodes for one right side [-]",
                                "10 to 24"};
   Rule<double> gain{0.6, "cost.gain", "P ranks are P to this power times as fast [-]", "two ranks"};
-  // A band factor by LAPACK.
-  Rule<double> band{1.5e-11, "cost.band", "of a multiplication in a wide band; in a narrow one entries take longer [s]",
-                    "one core"};
+  // A band factor: LAPACK works by blocks where it is wide.
+  Rule<double> wide{64, "cost.wide", "width of a wide band [-]", "LAPACK's blocks"};
+  Rule<double> wide_band{1.5e-11, "cost.wide_band", "of a multiplication in a wide band [s]", "one core"};
+  Rule<double> narrow_band{1e-10, "cost.narrow_band", "of a multiplication in a narrow band [s]", "one core"};
   Rule<double> band_entry{6e-9, "cost.band_entry", "of an entry of the band [s]", "one core"};
+  Rule<double> band_row_in_solve{18e-9, "cost.band_row_in_solve", "of a row in a solve [s]", "one core"};
   Rule<double> band_entry_in_solve{1e-9, "cost.band_entry_in_solve", "of an entry in a solve [s]", "one core"};
 };
 inline constexpr_rules CostModel cost_model;
