@@ -57,12 +57,23 @@ void for_pairs(const solver::SparseColumns &columns, const int i, const Act &act
       if (columns.row[l] <= columns.row[k]) act(k, l);
 }
 
+std::size_t count_pairs(const solver::SparseColumns &columns)
+{
+  std::size_t pairs = 0;
+  for (int i = 0; i < columns.count(); ++i) {
+    const std::size_t n = columns.begin[i + 1] - columns.begin[i];
+    pairs += n * (n + 1) / 2;
+  }
+  return pairs;
+}
+
 } // namespace
 
 CoarseModel::CoarseModel(const int size, const solver::SymmetricEntries &K, solver::SparseColumns points,
                          std::vector<ModelPoint> data)
     : size_(size), K_(sorted(K)), matrix_(K_.value), points_(std::move(points)), data_(std::move(data)), first_{0}
 {
+  if (count_pairs(points_) > static_cast<std::size_t>(choice_rules.most_pairs)) return;
   std::vector<std::size_t> row(size_ + 1); // where its entries begin
   for (int i = 0; i <= size_; ++i) row[i] = std::lower_bound(K_.row.begin(), K_.row.end(), i) - K_.row.begin();
   bool all_found = true; // the unknowns of a point are those of one cell

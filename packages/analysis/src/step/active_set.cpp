@@ -2,7 +2,6 @@
 #include "rpc/analysis/active_set.hpp"
 
 #include "rpc/analysis/rules.hpp"
-#include "rpc/core/rules.hpp"
 #include "rpc/solver/rules.hpp"
 
 #include <algorithm>
@@ -39,12 +38,13 @@ ActiveSetLoop::ActiveSetLoop(contact::Iterate &iterate, const ActiveSetTolerance
       start_(iterate.hessian()->getDomainMap()),
       rough_(iterate.points().num_total > iterate.points().num_fixed), // else there is no state to choose
       rubs_(iterate_.points().friction.anywhere), then_(then), headway_(within(choice_rules.most_idle)),
-      confirmed_headway_({headway_rules.falls, 0}), trial_gap_(path_rules.trial)
+      confirmed_headway_({choice_rules.idle_residual, 0}), trial_gap_(path_rules.trial)
 {
   if (!rubs_) return;
   path_ = Path::behind; // it knows no friction
   turns_ = iterate_.points().dim == 3;
-  headway_ = within(choice_rules.most_changes);
+  confirmed_headway_ = Headway({choice_rules.idle_residual, turns_ ? choice_rules.most_idle_turns : 0});
+  headway_ = within(then == Then::nothing ? choice_rules.most_changes_tried : choice_rules.most_changes);
 }
 
 void ActiveSetLoop::starts_predicted(const FoundBy coarser, MakeCoarseChoice coarse_choice)
@@ -145,9 +145,9 @@ bool ActiveSetLoop::newton_hands_over(MinimizationSteps &steps)
   newton_.short_steps += context.step_length < solver::newton_rules.cut_short;
   const bool has_settled = std::abs(context.step_length - 1) <= solver::newton_rules.to_the_minimum &&
                            context.functional.piece(u) == context.piece;
-  if (has_settled && !rubs_ && confirmations_ < solver::newton_rules.most_inner_steps) {
+  if (has_settled && !rubs_ && confirmations_ < choice_rules.most_confirmations) {
     ++confirmations_;
-    take_over(u, choice_rules.most_idle);
+    take_over(u, path_rules.trial_changes);
     return true;
   }
   const bool is_blocked = newton_.short_steps >= choice_rules.most_short_steps;
@@ -157,7 +157,7 @@ bool ActiveSetLoop::newton_hands_over(MinimizationSteps &steps)
     return true;
   }
   if (!is_blocked || std::exchange(resumed_, true)) return false;
-  take_over(u, solver::newton_rules.most_inner_steps);
+  take_over(u, choice_rules.most_changes_resumed);
   return true;
 }
 
@@ -224,15 +224,16 @@ ActiveSetLoop::Verdict ActiveSetLoop::choose(const Vector &u)
   return Verdict::go_on;
 }
 
-/// Whether the choice has not been taken before. With friction the change of the largest violation may be new where all of them are not.
+/// Whether the choice has not been taken before. With friction a part of the changes may be new where all of them are not.
 bool ActiveSetLoop::is_new_choice()
 {
   using Answer = Headway::Answer;
-  if (headway_.visit(choice_->fingerprint) == Answer::progress) return true;
-  if (rubs_) {
-    choice_ = iterate_.largest_changes(*choice_, 1.);
-    if (choice_->changes > 0 && headway_.visit(choice_->fingerprint) == Answer::progress) return true;
-  }
+  if (headway_.visit(choice_->fingerprint, turns_ ? choice_rules.most_visits : 1) != Answer::cycle) return true;
+  if (rubs_)
+    for (const double part : {double(choice_rules.first_part), 1.}) {
+      choice_ = iterate_.largest_changes(*choice_, part);
+      if (choice_->changes > 0 && headway_.visit(choice_->fingerprint) == Answer::progress) return true;
+    }
   // What rough solves leave may decide; by good ones hardly a point goes to and fro. Those have been tried before a Tresca problem.
   if (!rough_ || then_ == Then::nothing) return false;
   rough_ = false;
@@ -322,13 +323,12 @@ void ActiveSetLoop::back_to_start(MinimizationSteps &steps)
 solver::Accuracy ActiveSetLoop::wanted() const
 {
   double rough = 0;
-  if (rough_ && coarse_) return {solver::newton_rules.beside_target * target_ / norm_, choice_rules.coarse_error};
+  if (rough_ && coarse_) return {choice_rules.enough * target_ / norm_, choice_rules.coarse_error};
   if (rough_)
     rough = solver::newton_rules.forcing * std::min(scale_, norm_);
   else if (turns_)
     rough = std::min<double>(solver::newton_rules.forcing, norm_ / scale_) * norm_;
-  return {std::max(solver::newton_rules.beside_target * target_, rough) / norm_,
-          rough_ ? choice_rules.rough_error : 0.};
+  return {std::max(choice_rules.enough * target_, rough) / norm_, rough_ ? choice_rules.rough_error : 0.};
 }
 
 /// A step to the minimum for the chosen active set.

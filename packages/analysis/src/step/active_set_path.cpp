@@ -20,7 +20,7 @@ bool ActiveSetLoop::leaves_path()
   if (!ends && !(path.settled() && path.gap() <= trial_gap_)) return false;
   if (ends) path_ = Path::behind;
   trial_gap_ = path_rules.trial * path.gap();
-  start_over(path.choice(), choice_rules.most_idle); // (5.20)
+  start_over(path.choice(), path_rules.trial_changes); // (5.20)
   return true;
 }
 
@@ -57,7 +57,7 @@ bool ActiveSetLoop::solve_interior(solver::NewtonContext &context, const Vector 
     Vector lacking(u.getMap());
     iterate_.apply_hessian(d, lacking);
     lacking.update(1., F, 1.);
-    const double wanted = solver::newton_rules.forcing * F.norm2(), missing = lacking.norm2();
+    const double wanted = path_rules.forcing * F.norm2(), missing = lacking.norm2();
     if (missing <= wanted) return true;
     const int iterations = context.linear_iterations;
     Vector correction(u.getMap());
@@ -68,20 +68,20 @@ bool ActiveSetLoop::solve_interior(solver::NewtonContext &context, const Vector 
   };
   Vector F(u.getMap());
   interior_->linearize(u, F);
-  if (!solve(F, direction, solver::newton_rules.forcing)) return false;
+  if (!solve(F, direction, path_rules.forcing)) return false;
   direction.scale(-1.);
   interior_->correct(u, direction, F);
   if (!improve(F, direction)) return false;
   double t = interior_->longest_step(u, direction);
-  for (int times = 0; times < path_rules.most_centerings && t < 1; ++times) {
+  for (int times = 0; times < path_rules.most_centerings && t < path_rules.long_enough; ++times) {
     interior_->center(u, direction, F);
     Vector centered(direction, Teuchos::Copy);
     const double longer = improve(F, centered) ? interior_->longest_step(u, centered) : 0;
-    if (!(longer > t)) {
+    if (longer > t)
+      direction.assign(centered);
+    else
       interior_->take_back();
-      break;
-    }
-    direction.assign(centered);
+    if (longer < t + path_rules.least_gain) break;
     t = longer;
   }
   return true;

@@ -3,6 +3,7 @@
 
 #include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/analysis/rules.hpp"
+#include "rpc/mesh/rules.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +16,17 @@ namespace
 
 /// The CG iterations to 1e-8 that multigrid takes at least on a body of the largest nu of its blocks: smoothers of single nodes see no
 /// functions without divergence.                                                                                 (4.10b)
-double expected_iterations(const double nu)
+///
+///     4 (1 - 2 nu)^(-1/2),  of P1 6 (1 - 2 nu)^(-1/2),  in stretched cells 3 (1 - 2 nu)^(-3/4) if that is more
+double expected_iterations(const mesh::Mesh &mesh, const double nu)
 {
-  return linear_rules.expected / std::sqrt(1 - 2 * nu);
+  const double to_go = 1 - 2 * nu;
+  if (mesh.element.order > 1 || mesh.element.shape != mesh::Shape::simplex)
+    return linear_rules.expected * std::pow(to_go, -0.5);
+  const double square = linear_rules.expected_of_p1 * std::pow(to_go, -0.5);
+  return mesh.box && mesh::stretch(*mesh.box) > mesh::coarsening_rules.equally_long
+             ? std::max(square, linear_rules.expected_of_stretched * std::pow(to_go, -0.75))
+             : square;
 }
 
 /// The iterations of the mixed form. Of order 1, in the plane and on meshes from files, CG iterations are counted that take the same time: a
@@ -46,7 +55,11 @@ solver::LinearSolverOptions tuned(solver::LinearSolverOptions options, const Pro
   if (d.mesh->element.order == 2) options.damping = linear_rules.damping_order_two;
   if (d.kinematics == fem::Kinematics::plane_stress) return options; // nothing is nearly incompressible
   const double nu = largest_ratio(d, materials);
-  options.expected_iterations = is_mixed ? expected_of_mixed_form(*d.mesh, nu) : expected_iterations(nu);
+  options.expected_iterations = expected_iterations(*d.mesh, nu);
+  if (is_mixed) {
+    options.expected_iterations = expected_of_mixed_form(*d.mesh, nu);
+    options.first_iterations = std::max<int>(options.first_iterations, linear_rules.first_iterations_of_mixed);
+  }
   options.rough_part = rough_part(nu);
   return options;
 }

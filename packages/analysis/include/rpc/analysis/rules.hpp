@@ -14,8 +14,15 @@ namespace rpc::analysis
 /// A choice is an update of the active set; overshoot is the ratio of inadmissible to admissible contact forces. doc/theory.md (5.7) to (5.9)
 struct ChoiceRules {
   // When choices by pressures end
-  Rule<int> most_idle{6, "choice.most_idle", "choices without progress, from states that the path tries, too [-]", "measurements.md: Limits on active-set updates"};
+  Rule<int> most_idle{6, "choice.most_idle", "choices without progress [-]", "measurements.md: Limits on active-set updates"};
   Rule<int> most_changes{10, "choice.most_changes", "choices with friction, with progress or not [-]", "not measured"};
+  Rule<int> most_changes_tried{3, "choice.most_changes_tried", "the same after a Tresca problem [-]", "not measured"};
+  Rule<int> most_changes_resumed{30, "choice.most_changes_resumed",
+                                 "choices without progress after Newton's steps were blocked at kinks [-]",
+                                 "not measured; slender bodies need them"};
+  Rule<int> most_visits{3, "choice.most_visits", "visits of one active set, friction in space: slip has turned meanwhile [-]", "not measured"};
+  Rule<double> first_part{0.5, "choice.first_part", "part of the changes that is tried first where an active set with friction came back [-]",
+                          "not measured"};
   Rule<double> most_left{10, "choice.most_left", "predicted changes to go that count as progress [choices]",
                          "measurements.md: Limits on active-set updates"};
   Rule<double> most_left_creeping{4, "choice.most_left_creeping", "the same by the speed at which the contact edge moves [choices]",
@@ -28,14 +35,16 @@ struct ChoiceRules {
   Rule<GO> few_changes{5, "choice.few_changes", "changed points up to which overshoot ends nothing [-]", "measurements.md: Limits on active-set updates"};
   // Where an active set is confirmed
   Rule<int> most_updates{2, "choice.most_updates", "multiplier updates at the end, even if pressures miss their tolerance then [-]", "not measured"};
+  Rule<double> idle_residual{0.5, "choice.idle_residual", "residual over the least before: a step that leaves more is idle [-]", "not measured"};
+  Rule<int> most_idle_turns{4, "choice.most_idle_turns", "idle steps in a row, friction in space [-]", "not measured"};
   Rule<double> negligible{1e-3, "choice.negligible", "violations that change no state, over the tolerance of pressures [-]", "not measured"};
   // When a coarser mesh chooses
   Rule<int> steps_before_coarse{4, "choice.steps_before_coarse", "steps before a coarser mesh chooses without overshoot [-]", "not measured"};
   Rule<double> one_more{1, "choice.one_more", "predicted changes to go above which it does [choices]", "not measured"};
-  Rule<int> most_idle_coarse{3, "choice.most_idle_coarse", "of these in a row without fewer changes than before [-]",
-                             "measurements.md: Ablation of all rules"};
+  Rule<int> most_idle_coarse{3, "choice.most_idle_coarse", "of these in a row without fewer changes than before [-]", "not measured"};
   Rule<GO> most_coarse_unknowns{60'000, "choice.most_coarse_unknowns", "unknowns of the coarser mesh, whose stiffness rank 0 holds [-]",
                                 "not measured"};
+  Rule<GO> most_pairs{30'000'000, "choice.most_pairs", "pairs of unknowns of the coarser mesh's points, for memory [-]", "not measured"};
   Rule<double> model_seconds{1, "choice.model_seconds", "time of a factor of the coarser mesh [s]", "not measured"};
   Rule<double> model_solves{
       on_gpu ? 10. : 1., "choice.model_solves",
@@ -52,10 +61,15 @@ struct ChoiceRules {
   Rule<double> left_per_step{0.5, "choice.left_per_step", "part of the way that a Newton step may leave in the mean, else it is slow [-]",
                              "theory.md (5.9a)"};
   Rule<double> least_left{0.1, "choice.least_left", "part of the way that a Newton step is taken to leave at least [-]", "not measured"};
+  Rule<int> most_confirmations{5, "choice.most_confirmations", "returns from Newton's method to choices [-]", "not measured"};
+  Rule<double> ended_by_rounding{1e-3, "choice.ended_by_rounding",
+                                 "residual over that before the step for the last active set: the step is enough [-]", "not measured"};
+  Rule<double> same_residual{0.1, "choice.same_residual", "part of that residual that other states make [-]", "not measured"};
   // Inexact solves
   Rule<double> rough_error{2e-4, "choice.rough_error", "error in energy that is enough instead [-]",
                            "theory.md (5.9): 1e-2 costs thin bodies half a step"};
   Rule<double> coarse_error{1e-8, "choice.coarse_error", "the same where a coarser mesh chooses, which would learn the error [-]", "not measured"};
+  Rule<double> enough{0.3, "choice.enough", "last solve's residual over the tolerance: recomputed it is larger [-]", "not measured"};
 };
 inline constexpr_rules ChoiceRules choice_rules;
 
@@ -63,18 +77,26 @@ inline constexpr_rules ChoiceRules choice_rules;
 struct PathRules {
   Rule<double> error{0.1, "path.error", "error in energy of a linear solve [-]",
                      "0.03 saves no step; a residual tells nothing of how far a thin body has bent"};
+  Rule<double> forcing{1e-2, "path.forcing", "residual of a linear solve over its right side [-]", "not measured"};
   Rule<int> most_centerings{2, "path.most_centerings", "corrections that centre a step (5.19a) [-]", "not measured"};
+  Rule<double> long_enough{0.9, "path.long_enough", "length from which a step is not centred [-]", "not measured"};
+  Rule<double> least_gain{0.03, "path.least_gain", "length gained from which a step is centred once more [-]", "not measured"};
   Rule<double> trial{1e-2, "path.trial",
                      "complementarity gap, relative, below which settled states are tried; then over the gap of the last trial [-]", "not measured"};
-  Rule<double> last_gap{1e-8, "path.last_gap", "gap that ends the path, that of the coarser mesh's model, too [-]", "not measured"};
+  Rule<double> last_gap{1e-8, "path.last_gap", "gap that ends the path [-]", "not measured"};
+  Rule<int> trial_changes{2, "path.trial_changes", "choices without progress from tried states [-]", "not measured"};
+  Rule<double> model_gap{3e-6, "path.model_gap", "gap that ends the path on the coarser mesh [-]", "not measured"};
+  Rule<double> early_model_gap{3e-5, "path.early_model_gap", "the same where the last step has changed no state [-]", "not measured"};
 };
 inline constexpr_rules PathRules path_rules;
 
 /// Uzawa's iteration, load steps and their halvings, predictions on coarser meshes.
 struct StepRules {
   // Uzawa's iteration
-  Rule<double> fast{0.1, "step.fast", "worst residual over the one before; above, penalties rise, where friction's bounds do not follow [-]",
+  Rule<double> fast{0.1, "step.fast", "worst residual over the one before; above, penalties rise [-]",
                     "theory.md (5.12)"};
+  Rule<double> fast_with_bounds{0.8, "step.fast_with_bounds", "the same of step.iterations_back iterations, friction's bounds follow [-]",
+                                "not measured"};
   Rule<int> iterations_back{6, "step.iterations_back",
                             "iterations back to compare with where friction's bounds follow [-]; off: 1",
                             "accelerated sequences do not fall at each step; not measured"};
@@ -111,7 +133,12 @@ struct LinearRules {
   // Iterations to expect, to 1e-8
   Rule<double> expected_of_mixed{30, "body.expected_of_mixed", "of the mixed form [CG iterations]", "theory.md (4.10d)"};
   Rule<double> cost_of_step{0.035, "body.cost_of_step", "step of the polynomial for pressures [CG iterations]", "theory.md (4.10d)"};
-  Rule<double> expected{6, "body.expected", "of other bodies, times (1 - 2 nu)^(-1/2) [CG iterations]", "theory.md (4.10b)"};
+  Rule<int> first_iterations_of_mixed{40, "body.first_iterations_of_mixed",
+                                      "iterations of the mixed form before a sparse factor is considered [-]", "not measured"};
+  Rule<double> expected{4, "body.expected", "of other bodies, times (1 - 2 nu)^(-1/2) [CG iterations]", "theory.md (4.10b)"};
+  Rule<double> expected_of_p1{6, "body.expected_of_p1", "the same of P1 [CG iterations]", "theory.md (4.10b)"};
+  Rule<double> expected_of_stretched{3, "body.expected_of_stretched", "of stretched P1, times (1 - 2 nu)^(-3/4) [CG iterations]",
+                                     "theory.md (4.10b)"};
   Rule<double> rough_incompressible{0.002, "body.rough_incompressible", "1 - 2 nu below which solves while states change are better [-]",
                                     "theory.md (5.9b)"};
   Rule<double> damping_order_two{1.6, "body.damping_order_two", "damping of MueLu's prolongators at order 2 [-]",
