@@ -187,7 +187,7 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
 KrylovResult Krylov::solve(const Preconditioner &B, const bool is_symmetric, const Vector &b, Vector &x,
                            const Accuracy &wanted, const GivesUp &gives_up)
 {
-  if (is_symmetric && wanted.error > 0 && B.is_exact()) {
+  if (is_symmetric && wanted.error >= linear_rules.large_error && B.is_exact()) {
     B.apply(b, x);
     KrylovResult result;
     result.converged = true;

@@ -40,6 +40,8 @@ struct LinearRules {
                        "a stall is an error of ten gains, (4.10c)"};
   Rule<double> small_error{1e-4, "linear.small_error", "error at which a breakdown is that of rounding [-]",
                            "of a singular matrix most of the error is left"};
+  Rule<double> large_error{1e-2, "linear.large_error", "error for one application of an exact factor [-]",
+                           "with less a thin strip takes 16 Newton steps instead of 6"};
   Rule<int> gmres_vectors{50, "linear.gmres_vectors", "GMRES iterations before a restart [-]",
                           "with multigrid it takes fewer"};
 
