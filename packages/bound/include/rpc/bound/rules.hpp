@@ -8,9 +8,10 @@ namespace rpc::bound
 {
 
 struct BoundRules {
-  Rule<int> steps{3, "bound.steps",
-                  "of conjugate gradients on tractions in balance, in space twice as many, of hexahedra four times [-]; off: 0",
-                  "doc/bounds.md (13.9): the table of what each step gains"};
+  Rule<int> steps{
+      3, "bound.steps",
+      "of conjugate gradients on tractions in balance, in space twice as many, of hexahedra four times [-]; off: 0",
+      "doc/bounds.md (13.9): the table of what each step gains"};
 };
 inline constexpr_rules BoundRules bound_rules;
 
