@@ -22,7 +22,8 @@ struct DifferenceOfKinds {
   KOKKOS_FUNCTION void judge_balance(const double *x, const AffineTetrahedron &cell, double &imbalance,
                                      double &force) const
   {
-    double vertex[4][3], F[3] = {}, M[3] = {}, size = 0; // vertices relative to the centre
+    CellBalance balance{};
+    double vertex[4][3]; // vertices relative to the centre
     for (int i = 0; i < 3; ++i) {
       vertex[0][i] = -(cell.F[i][0] + cell.F[i][1] + cell.F[i][2]) / 4;
       for (int l = 0; l < 3; ++l) vertex[l + 1][i] = vertex[0][i] + cell.F[i][l];
@@ -37,18 +38,10 @@ struct DifferenceOfKinds {
         for (int j = 0; j < 2; ++j)
           along[j][i] = in.tables.linear(1 + j, 1) * (vertex[corner[1]][i] - first) +
                         in.tables.linear(1 + j, 2) * (vertex[corner[2]][i] - first);
-        F[i] += T[i];
-        force = math::fmax(force, math::magnitude(T[i]) + math::magnitude(T[3 + i]) + math::magnitude(T[6 + i]));
-        size = math::fmax(size, 3 * math::magnitude(arm[i]));
       }
-      for (int i = 0; i < 3; ++i) {
-        const int a = (i + 1) % 3, b = (i + 2) % 3;
-        M[i] += arm[a] * T[b] - arm[b] * T[a];
-        for (int j = 0; j < 2; ++j) M[i] += along[j][a] * T[3 + 3 * j + b] - along[j][b] * T[3 + 3 * j + a];
-      }
+      balance.add(T, arm, along);
     }
-    for (int i = 0; i < 3; ++i)
-      imbalance = math::fmax(imbalance, math::fmax(math::magnitude(F[i]), math::magnitude(M[i]) / size));
+    balance.judge(imbalance, force);
   }
 
   KOKKOS_FUNCTION void operator()(const LO c, double &sum, double &imbalance, double &force) const

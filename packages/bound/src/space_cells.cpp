@@ -238,26 +238,15 @@ struct SpaceDifference {
   KOKKOS_FUNCTION void judge_balance(const LO c, const double *x, const AffineTetrahedron &cell, double &imbalance,
                                      double &force) const
   {
-    double F[3], M[3] = {}, size = 0;
-    for (int i = 0; i < 3; ++i) F[i] = in.force[i] * cell.determinant / 6;
+    CellBalance balance{};
+    for (int i = 0; i < 3; ++i) balance.force[i] = in.force[i] * cell.determinant / 6;
     for (int s = 0; s < 4; ++s) {
       const FacetFrame frame(in, in.facets.of_cell(c, s));
-      const double *const T = x + s * Sizes::per_facet;
       double arm[3];
-      for (int i = 0; i < 3; ++i) {
-        arm[i] = frame.centre[i] - cell.centre[i];
-        F[i] += T[i];
-        force = math::fmax(force, math::magnitude(T[i]) + math::magnitude(T[3 + i]) + math::magnitude(T[6 + i]));
-        size = math::fmax(size, 3 * math::magnitude(arm[i]));
-      }
-      for (int i = 0; i < 3; ++i) {
-        const int a = (i + 1) % 3, b = (i + 2) % 3;
-        M[i] += arm[a] * T[b] - arm[b] * T[a];
-        for (int j = 0; j < 2; ++j) M[i] += frame.along[j][a] * T[3 + 3 * j + b] - frame.along[j][b] * T[3 + 3 * j + a];
-      }
+      for (int i = 0; i < 3; ++i) arm[i] = frame.centre[i] - cell.centre[i];
+      balance.add(x + s * Sizes::per_facet, arm, frame.along);
     }
-    for (int i = 0; i < 3; ++i)
-      imbalance = math::fmax(imbalance, math::fmax(math::magnitude(F[i]), math::magnitude(M[i]) / size));
+    balance.judge(imbalance, force);
   }
 
   KOKKOS_FUNCTION void operator()(const LO c, double &sum, double &imbalance, double &force) const

@@ -207,4 +207,32 @@ KOKKOS_INLINE_FUNCTION void traction_of_force(const SpaceInput &in, const Affine
     }
 }
 
+/// What the tractions on a cell's facets leave of its balance.
+struct CellBalance {
+  double force[3], moment[3];   ///< [N], [N m] about the cell's centre
+  double largest = 0, size = 0; ///< force on a facet [N]; of the cell [m]
+
+  /// @param T  a facet's force, then its two moments along the facet   @param arm  of the facet's centre   @param along  what the moments are by
+  KOKKOS_INLINE_FUNCTION void add(const double *const T, const double (&arm)[3], const double (&along)[2][3])
+  {
+    for (int i = 0; i < 3; ++i) {
+      force[i] += T[i];
+      largest = math::fmax(largest, math::magnitude(T[i]) + math::magnitude(T[3 + i]) + math::magnitude(T[6 + i]));
+      size = math::fmax(size, 3 * math::magnitude(arm[i]));
+    }
+    for (int i = 0; i < 3; ++i) {
+      const int a = (i + 1) % 3, b = (i + 2) % 3;
+      moment[i] += arm[a] * T[b] - arm[b] * T[a];
+      for (int j = 0; j < 2; ++j) moment[i] += along[j][a] * T[3 + 3 * j + b] - along[j][b] * T[3 + 3 * j + a];
+    }
+  }
+  /// Raises what is left at most, a force or a moment by the size, and the largest force on a facet.
+  KOKKOS_INLINE_FUNCTION void judge(double &imbalance, double &of_facet) const
+  {
+    for (int i = 0; i < 3; ++i)
+      imbalance = math::fmax(imbalance, math::fmax(math::magnitude(force[i]), math::magnitude(moment[i]) / size));
+    of_facet = math::fmax(of_facet, largest);
+  }
+};
+
 } // namespace rpc::bound
