@@ -213,12 +213,13 @@ double error_of_gap(const std::vector<Cycle> &cycles, const std::vector<double> 
 }
 
 /// Where nothing touches, contact force, pressures and the area in contact are 0 where the gap that is left is larger than its error; else no
-/// mesh has shown what pressures there may be.                                                                   (10.7e)
+/// mesh has shown what pressures there may be. Tresca friction acts at open points too: a force that it leaves keeps the bar that meshes
+/// show.                                                                                                         (10.7e)
 void judge_open_body(const Cycle &last, const double error_of_gap, ObservedErrors &errors)
 {
   if (last.contact.contact_length > 0) return;
   const bool open = last.smallest_gap > error_of_gap;
-  if (open) errors.contact_force = 0;
+  if (open && length(last.contact.force) == 0) errors.contact_force = 0;
   const auto set = [&](double &bar, const char *const key) {
     bar = open ? 0 : std::numeric_limits<double>::quiet_NaN();
     open ? void(errors.unknown.erase(key)) : void(errors.unknown[key] = may_touch);
