@@ -267,7 +267,7 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     const PlaceBetweenNodes place{found.deepest, found.place, k, found.width, rows.size(f)};
     if (place.depth > mine.deepest.depth) mine.deepest = place;
     mine.smallest_gap = std::min(mine.smallest_gap, -found.largest_excess);
-    if (!unseen && (found.deepest > 0 || partly) && reading.is_off(f)) {
+    if (!unseen && (found.deepest > 0 || partly) && reading.is_off(f, modulus)) {
       const Misread misread = reading.read(f, modulus, 4 * mu * (lambda + mu) / modulus);
       mine.misread_energy += misread.energy;
       mine.misread_force += misread.force;

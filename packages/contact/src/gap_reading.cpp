@@ -13,8 +13,13 @@ double GapReading::penetration_at_sample(const LO f, const FacetShape &shape, co
   return penetration_at(sample, options) - rows.interpolated(f, shape, FacetRows::dent);
 }
 
-bool GapReading::is_off(const LO f) const
+bool GapReading::is_off(const LO f, const double modulus) const
 {
+  const double compliance = rows.size(f) / modulus;
+  for (int a = 0; a < rows.nodes; ++a)
+    if (rows.column(f, a, FacetRows::bearing) < 0 &&
+        rows.column(f, a, FacetRows::penetration) > compliance * rows.column(f, a, FacetRows::pressure))
+      return true;
   double least = std::numeric_limits<double>::infinity(), most = -least, furthest = 0;
   for (int a = 0; a < rows.nodes; ++a) {
     least = std::min(least, rows.column(f, a, FacetRows::penetration));

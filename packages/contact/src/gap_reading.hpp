@@ -23,7 +23,9 @@ struct GapReading {
   bool axisymmetric;
 
   /// Whether samples are far from what the nodes show: the gap jumps, or has a kink. NaN and infinity, where the obstacle is missed, are not.
-  bool is_off(LO f) const;
+  /// Nor does nodal quadrature see a node without weight that lies deeper in the foundation than its pressure explains.
+  /// @param modulus  of the cell: lambda + 2 mu [Pa]
+  bool is_off(LO f, double modulus) const;
   /// Of a facet that is_off().
   /// @param modulus, of_surface  of the cell: lambda + 2 mu, and E/(1 - nu^2), by which a surface gives way [Pa]
   Misread read(LO f, double modulus, double of_surface) const;
