@@ -107,6 +107,7 @@ void print_meshes(std::ostream &out, const adapt::Adaptation &adaptation)
 std::string estimate_text(const Scene &scene, const Solution &s, const char *const format)
 {
   std::string text = number_text(format, relative_estimate(s)) + " of the energy norm";
+  if (s.estimate->misses_contact()) text = "at least " + text;
   if (scene.adapt.adapts()) text += ", asked for: " + number_text(format, scene.adapt.target);
   const double exact = exact_error(scene, s);
   if (!std::isnan(exact)) text += "; by the exact energy " + number_text(format, exact);

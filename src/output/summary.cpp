@@ -192,6 +192,7 @@ void add_errors(nlohmann::ordered_json &json, const Scene &scene, const Solution
   auto &estimate = json["error_estimate"];
   estimate["energy_norm"] = std::sqrt(s.estimate->total());
   estimate["relative"] = relative;
+  estimate["at_least"] = s.estimate->misses_contact();
   for (const adapt::ErrorPart &part : s.estimate->parts) estimate[part.key] = std::sqrt(part.squared);
   estimate["rounding"] = std::sqrt(s.estimate->rounding);
   estimate["exact_relative"] = maybe(exact);

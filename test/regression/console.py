@@ -246,6 +246,19 @@ class Told(ConsoleTestCase):
         self.assertAlmostEqual(bar, self.summary["error_estimate"]["relative"] ** 2 * self.summary["energy_norm_squared"], delta=1e-9 * bar)
         self.assertIn("of J alone", self.end["errors"])
 
+    def test_an_estimate_that_is_mostly_contact_that_the_mesh_misses_is_the_least(self):
+        """A bump reaches into a body at rest, between its nodes; as deep at a node."""
+        for middle, at_least in [("0.3125", True), ("0.25", False)]:
+            self.run_deck("--set=Adapt->Estimate Error=true", deck=f"""
+rpc:
+  Mesh: {{Lower: [0.0, 0.0], Upper: [1.0, 1.0], Cells: [4, 4], Element: P2}}
+  Material: {{Young's Modulus: 1000.0, Poisson's Ratio: 0.3}}
+  Dirichlet: {{top: {{X: 0.0, Y: 0.0}}}}
+  Contact: {{Side: bottom, Normal: "0, -1", Gap: "0.05 - 0.06*exp(-((x - {middle})/0.02)^2)"}}
+""")
+            self.assertEqual(self.summary["error_estimate"]["at_least"], at_least)
+            self.assertEqual(self.end["estimated error"].startswith("at least "), at_least)
+
     def test_an_estimate_of_rounding_gives_no_bar_and_no_advice(self):
         self.run_deck(SMALL, "--set=Traction->top->Y=0", "--set=Adapt->Estimate Error=true")
         self.assertEqual(self.end["errors"], "not known: the strain energy is at rounding level")
