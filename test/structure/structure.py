@@ -9,13 +9,15 @@ private member function, which nvcc refuses, each source file that is longer tha
 namespace of its own, each constant that two sources of a package define, each number at namespace scope that is neither a rule nor has a
 subject in NO_RULES, each package with more rules (core/rule.hpp) than MOST_RULES, each equation or
 measurement that a rule names and the documents lack, each source, script and CMake file without the line that
-names its licence, and each place that names another version of the program than CMakeLists.txt, and each use of gmsh outside the program rpc_gmsh; the exit code is 1 if there is one. Then the number of rules of each package.
+names its licence, each script that begins with #! and is not executable, each place that names another version of the program than CMakeLists.txt,
+and each use of gmsh outside the program rpc_gmsh; the exit code is 1 if there is one. Then the number of rules of each package.
 
     python3 structure.py --add-licence [<root of the sources>]
 
 puts that line into the files that lack it, and prints their names.
 """
 
+import os
 import pathlib
 import re
 import sys
@@ -331,6 +333,13 @@ def add_licences(root):
         yield str(file.relative_to(root))
 
 
+def check_scripts(root):
+    """What names its interpreter can be started."""
+    for file, _ in licensed(root):
+        if file.read_bytes().startswith(b"#!") and not os.access(file, os.X_OK):
+            yield f"{file.relative_to(root)}: begins with #!, but is not executable: chmod +x"
+
+
 def check_version(root):
     """CITATION.cff cites the version that CMakeLists.txt builds."""
     if (root / "CITATION.cff").exists():
@@ -361,6 +370,7 @@ def violations(root):
     yield from check_rules(root)
     yield from check_sources_of_rules(root)
     yield from check_licences(root)
+    yield from check_scripts(root)
     yield from check_version(root)
 
 

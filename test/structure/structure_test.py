@@ -198,6 +198,13 @@ class Structure(unittest.TestCase):
             self.assertEqual((root / "cmake/a.sh").read_text(), f"#!/bin/bash\n# {line}\nls\n")
             self.assertEqual((root / "packages/mesh/CMakeLists.txt").read_text(), f"# {line}\nrpc_add_package(mesh)\n")
 
+    def test_finds_a_script_that_cannot_be_started(self):
+        with self.tree(**{"cmake__b.sh": f"#!/bin/bash\n# {structure.LICENCE}\n"}) as root:
+            script = root / "cmake/b.sh"
+            self.assertEqual(list(structure.check_scripts(root)), ["cmake/b.sh: begins with #!, but is not executable: chmod +x"])
+            script.chmod(0o755)
+            self.assertEqual(list(structure.check_scripts(root)), [])
+
     def test_finds_a_citation_of_another_version(self):
         for version, wrong in (("1.2.3", 0), ("1.2.2", 1)):
             found = self.violations(**{"CMakeLists.txt": "project(rpc VERSION 1.2.3 LANGUAGES CXX)\n", "CITATION.cff": f"version: {version}\n"})
