@@ -84,13 +84,23 @@ def row(name, backend, mu, runs):
 
 
 def read(path):
+    """The rows of a table, all of known scenes and backends; none of a table that there is not."""
     if not os.path.exists(path):
         return []
     with open(path, newline="") as file:
-        return list(csv.DictReader(file))
+        table = csv.DictReader(file)
+        rows = list(table)
+    if table.fieldnames != COLUMNS:
+        refuse("%s has the columns %s, not %s" % (path, ", ".join(table.fieldnames or []), ", ".join(COLUMNS)))
+    for number, r in enumerate(rows, 2):
+        for key, known in (("scene", SCENES), ("backend", STYLES)):
+            if r[key] not in known:
+                refuse("%s, line %d: no %s \"%s\"; there are: %s. Take the line out, or name it as it is called now" % (path, number, key, r[key], "; ".join(known)))
+    return rows
 
 
 def measure(options):
+    read(options.table)  # refused before hours of runs
     clock = seconds_of_processor if options.backend == "one core" else time.perf_counter
     for name in options.scenes:
         runs = {mu: [] for mu in COEFFICIENTS}
@@ -108,14 +118,15 @@ def measure(options):
 
 
 def draw(path):
-    if not read(path):
+    rows = read(path)
+    if not rows:
         refuse("%s has no rows; measure makes them" % path)
     import matplotlib
 
     matplotlib.use("Agg")
     from matplotlib import pyplot, ticker
 
-    rows, parts = read(path), list(dict.fromkeys(part for _, part in SCENES.values()))
+    parts = list(dict.fromkeys(part for _, part in SCENES.values()))
     figure, axes = pyplot.subplots(2, len(parts), figsize=(3.6 * len(parts), 5), layout="constrained", sharex="col", squeeze=False,
                                    gridspec_kw={"height_ratios": [3, 2]})
     for (times, ratios), part in zip(axes.T, parts):

@@ -54,6 +54,20 @@ class FrictionCost(RpcTestCase):
             self.assertNotIn("Traceback", done.stderr)
             self.assertEqual(list(self.folder.iterdir()), [])
 
+    def test_tables_with_what_there_is_not_are_refused_before_anything_is_measured(self):
+        line = "shear.xml,9506,one core,0,1,26,30,40,1,0.4.0"
+        head = (SOURCE / "doc" / "friction_cost.csv").read_text().splitlines()[0]
+        for text, told in ((f"{head}\n{line}\n{line.replace('shear', 'sheer')}\n", 'friction_cost.csv, line 3: no scene "sheer.xml"; there are: 32 x 32 x 16; '),
+                           (f"{head}\n{line.replace('one core', 'two cores')}\n", 'line 2: no backend "two cores"; there are: one core; '),
+                           ("scene,seconds\nshear.xml,1\n", "friction_cost.csv has the columns scene, seconds, not scene, unknowns, ")):
+            (self.folder / "friction_cost.csv").write_text(text)
+            for words in (("draw", "friction_cost.csv"), ("measure", "--backend=one core", "--scenes=shear.xml", "/nowhere/rpc")):
+                done = self.start(*words)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn(told, done.stderr)
+                self.assertNotIn("Traceback", done.stderr)
+            self.assertEqual((self.folder / "friction_cost.csv").read_text(), text)
+
 
 if __name__ == "__main__":
     unittest.main()
