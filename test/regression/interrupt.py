@@ -11,8 +11,9 @@ import subprocess
 import time
 import unittest
 
-from rpc_run import LAUNCH, PROGRAM, RANKS, RpcTestCase, errors, files, ranks_below
+from rpc_run import LAUNCH, PROGRAM, RANKS, RpcTestCase, errors, files, processes_below, ranks_below
 
+GMSH = pathlib.Path(PROGRAM).parent / "packages" / "mesh" / "rpc_gmsh"
 SIGNALS = [signal.SIGINT, signal.SIGTERM]
 NOT_CONVERGED = 4
 RESULTS = ["out/beam.json"]  # an iterate is no result
@@ -21,6 +22,16 @@ FACTORED = ["--set=Mesh->Cells={20,20,10}", "--set=Mesh->Upper={1,1,0.15}", "--s
             "--set=Material->Dilatation=full"]  # some ten seconds
 NO_MULTIGRID = ["--set=Linear Solver->MueLu->max levels=1", "--set=Linear Solver->MueLu->coarse: type=RELAXATION",
                 "--set=Linear Solver->Maximum Iterations=100000"]
+
+FINE = """SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 1, 1}; MeshSize {:} = 0.01;  // gmsh takes minutes
+Physical Volume("body") = {1}; Physical Surface("bottom") = {5}; Physical Surface("top") = {6};
+"""
+DECK_OF_FINE = """fine:
+  Mesh: {Type: gmsh, File: fine.geo}
+  Material: {Young's Modulus: 1.0, Poisson's Ratio: 0.3}
+  Dirichlet: {top: {X: 0.0, Y: 0.0, Z: -0.01}}
+  Contact: {Side: bottom}
+"""
 
 
 def told(number):
@@ -41,9 +52,9 @@ def num_threads(pid):
 
 @unittest.skipUnless(pathlib.Path(f"/proc/self/task/{os.getpid()}/children").exists(), "needs Linux' /proc")
 class Interrupt(RpcTestCase):
-    def start(self, *arguments, deck="beam.xml"):
+    def start(self, *arguments, deck="beam.xml", **options):
         process = subprocess.Popen(LAUNCH + [PROGRAM, f"--input={deck}", "--output=out", *arguments], cwd=self.folder,
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL, **options,
                                    preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         self.addCleanup(process.kill)
         return process
@@ -149,6 +160,33 @@ class Interrupt(RpcTestCase):
                 self.assertEqual(files(self.folder), ["out/block.json"])
                 summary = json.loads((self.folder / "out" / "block.json").read_text())
                 self.assertIn("sparse factor", summary["solver_path"])
+
+    @unittest.skipUnless(os.environ.get("RPC_GMSH") == "ON", "needs gmsh")
+    @unittest.skipIf(RANKS > 1, "needs one rank: mpirun passes signals on to the ranks alone")
+    def test_while_gmsh_makes_a_mesh_the_run_and_gmsh_end_within_seconds(self):
+        (self.folder / "fine.geo").write_text(FINE)
+        (self.folder / "fine.yaml").write_text(DECK_OF_FINE)
+        written = files(self.folder)
+        for number in SIGNALS:
+            for to_all in (False, True):  # Ctrl-C at a console, and batch systems, reach gmsh too
+                with self.subTest(number.name, to_all=to_all):
+                    process = self.start(deck="fine.yaml", start_new_session=True)
+                    self.last_rank(process)
+                    gmsh = []
+
+                    def meshes():
+                        gmsh[:] = processes_below(process.pid, GMSH)
+                        return len(gmsh) == 2  # the program, and its child with this mesh
+                    self.wait_for(process, meshes)
+                    time.sleep(0.2)
+                    (os.killpg if to_all else os.kill)(process.pid, number)
+                    sent = time.monotonic()
+                    result = self.end(process, NOT_CONVERGED)
+                    self.assertLess(time.monotonic() - sent, 5)
+                    self.expect_refusal(result, NOT_CONVERGED, [f"interrupted by {number.name} while gmsh made a mesh; no results are written"])
+                    self.assertEqual(files(self.folder), written)
+                    left = [pid for pid in gmsh if pathlib.Path(f"/proc/{pid}/exe").exists()]
+                    self.assertEqual(left, [])
 
     def test_while_results_are_written_lets_them_be_finished(self):
         process = self.start("--set=Mesh->Cells={160,32}")

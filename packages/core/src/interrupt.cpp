@@ -78,7 +78,7 @@ bool interrupted(const Teuchos::Comm<int> &comm)
 
 std::string interruption()
 {
-  if (agreed == SIGINT) return "interrupted by SIGINT";
+  if ((agreed != 0 ? agreed : received.load()) == SIGINT) return "interrupted by SIGINT";
   const bool below_mpirun = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr; // of Open MPI, which passes no SIGINT on
   return std::string("interrupted by SIGTERM") + (below_mpirun ? " (mpirun sends it for Ctrl-C, too)" : "");
 }
@@ -86,6 +86,11 @@ std::string interruption()
 void throw_if_interrupted(const Teuchos::Comm<int> &comm, const std::string &state)
 {
   if (interrupted(comm)) throw Error(ExitCode::not_converged, interruption() + " " + state);
+}
+
+void throw_if_asked(const std::string &state)
+{
+  if (received.load() != 0) throw Error(ExitCode::not_converged, interruption() + " " + state);
 }
 
 bool ended_before_interrupt(const Teuchos::Comm<int> &comm, const std::function<void()> &work)

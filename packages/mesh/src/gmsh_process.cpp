@@ -4,6 +4,7 @@
 #include "gmsh_wire.hpp"
 #include "mesh_formats.hpp"
 #include "rpc/core/error.hpp"
+#include "rpc/core/interrupt.hpp"
 #include "rpc/mesh/gmsh.hpp"
 #include "rpc/mesh/has_gmsh.hpp"
 
@@ -15,6 +16,7 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <optional>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -57,11 +59,13 @@ public:
   std::string start();
 
   /// @param[out] status  of the process that answered, as waitpid() gives it; none if the system does not tell
+  /// @throws rpc::Error (not_converged) where this process is asked to stop before: then the program has ended, too
   std::string answer(const std::string &request, std::optional<int> &status);
 
 private:
   Program() = default;
   void stop();
+  void wait_for_answer();
   void close_socket();
 
   pid_t pid_ = -1, owner_ = -1;
@@ -120,16 +124,27 @@ std::string Program::start()
   return "\"" + program + "\": " + std::strerror(error);
 }
 
+/// Until something comes, or the other side is closed.
+void Program::wait_for_answer()
+{
+  constexpr int between_looks = 100; // [ms]
+  pollfd other{socket_, POLLIN, 0};
+  while (::poll(&other, 1, between_looks) <= 0) throw_if_asked("while gmsh made a mesh; no results are written");
+}
+
 std::string Program::answer(const std::string &request, std::optional<int> &status)
 {
   std::string bytes;
   int number = 0;
   try {
-    if (send_bytes(socket_, request) && send_end(socket_, 0) && receive(socket_, bytes, number)) {
-      status = number;
-      return bytes;
+    if (send_bytes(socket_, request) && send_end(socket_, 0)) {
+      wait_for_answer();
+      if (receive(socket_, bytes, number)) {
+        status = number;
+        return bytes;
+      }
     }
-  } catch (...) { // out of memory: what is still to come would be taken for the next answer
+  } catch (...) { // out of memory, or asked to stop: what is still to come would be taken for the next answer
     stop();
     throw;
   }

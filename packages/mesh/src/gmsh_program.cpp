@@ -35,6 +35,7 @@ void close_inherited()
 [[noreturn]] void answer(const std::string &bytes, const pid_t parent)
 {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(1); // it has ended before
   bool sent = false;
   try {
     const GmshRequest request = unpacked_request(bytes);
@@ -86,6 +87,9 @@ int main()
 {
   prctl(PR_SET_PDEATHSIG, SIGKILL); // not to outlive an rpc that is killed
   std::signal(SIGCHLD, SIG_DFL);    // ignored by whoever started rpc, it would hide how children end
+  for (const int to_all :
+       {SIGINT, SIGTERM}) // of a console, a batch system, timeout: rpc answers them, and ends this program
+    std::signal(to_all, SIG_IGN);
   rpc::mesh::close_inherited();
   rpc::mesh::set_up_memory();
   rpc::mesh::start_gmsh();

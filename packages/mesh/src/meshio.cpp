@@ -5,9 +5,12 @@
 #include "meshio_script.hpp"
 #include "msh_reader.hpp"
 #include "rpc/core/error.hpp"
+#include "rpc/core/interrupt.hpp"
 
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -18,6 +21,7 @@
 #include <spawn.h>
 #include <sstream>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 namespace rpc::mesh
@@ -27,6 +31,7 @@ namespace
 
 namespace fs = std::filesystem;
 
+constexpr const char *while_it_ran = "while meshio converted a file; no results are written";
 constexpr const char *install =
     "install it, on Debian: apt-get install python3-meshio python3-h5py, elsewhere: pip install meshio[all]";
 
@@ -62,6 +67,7 @@ std::string contents_of(const std::string &path)
 }
 
 /// Runs python3 with its output in files. @return how it ended, as waitpid() gives it; -1 if it cannot be started
+/// @throws rpc::Error (not_converged) where this process is asked to stop meanwhile: then python3 has ended, too
 int run_python(std::vector<std::string> arguments, const std::string &out, const std::string &errors)
 {
   std::vector<char *> pointers;
@@ -77,9 +83,20 @@ int run_python(std::vector<std::string> arguments, const std::string &out, const
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) return -1;
   int status = 0;
-  while (::waitpid(child, &status, 0) < 0)
-    if (errno != EINTR) return -1;
-  return status;
+  constexpr std::chrono::milliseconds between_looks(10);
+  pid_t ended = 0;
+  try {
+    while ((ended = ::waitpid(child, &status, WNOHANG)) == 0) {
+      throw_if_asked(while_it_ran);
+      std::this_thread::sleep_for(between_looks);
+    }
+  } catch (const Error &) {
+    ::kill(child, SIGKILL);
+    ::waitpid(child, &status, 0);
+    throw;
+  }
+  throw_if_asked(while_it_ran); // Ctrl-C at a console ends python3, too
+  return ended == child ? status : -1;
 }
 
 /// The last line of a traceback, which says what is wrong.

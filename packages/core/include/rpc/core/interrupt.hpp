@@ -16,13 +16,16 @@ void install_interrupt_handlers();
 /// Whether any rank has been asked to stop: the same on every rank, and true forever once it is; collective on comm.
 bool interrupted(const Teuchos::Comm<int> &comm);
 
-/// "interrupted by SIGTERM", after interrupted() has been true: what this process has got. Below Open MPI's mpirun that may have been
+/// "interrupted by SIGTERM", after interrupted() has been true or throw_if_asked() has thrown: what this process has got. Below Open MPI's mpirun that may have been
 /// SIGINT, and is said.
 std::string interruption();
 
 /// @throws rpc::Error (not_converged) on every rank if any of them has been asked to stop; collective on comm
 /// @param state  how far the run is, for the message: "before ..., no results are written"
 void throw_if_interrupted(const Teuchos::Comm<int> &comm, const std::string &state);
+
+/// The same of this rank alone, for work of one rank that waits for another process, within on_root().
+void throw_if_asked(const std::string &state);
 
 /// Does work that cannot look for a request to stop itself, such as a library's, and looks meanwhile: the work has a thread of its own.
 /// On several ranks that takes an MPI that allows calls from several threads; else the request is seen after the work. Collective on comm.
