@@ -132,11 +132,12 @@ void add_what_a_mesh_leaves(const Cycle &last, const std::vector<double> &eta, O
   const double jumped = left_by_jumps(last).force;
   // No force moves further than the body: where others cancel in their sum, this one does little of the work.
   const double far = last.max_displacement, at_work = far > 0 ? std::max(force, last.energy_norm_squared / far) : force;
-  errors.contact_force = std::max(errors.contact_force, squared * at_work + jumped);
+  const auto of_mesh = [&](const double f) { return std::max(squared * f, last.ends_force) + jumped; };
+  errors.contact_force = std::max(errors.contact_force, of_mesh(at_work));
   double largest = force;
   for (const auto &reaction : last.reactions) largest = std::max(largest, length(reaction));
-  for (double &bar : errors.reactions) bar = std::max(bar, squared * std::max(largest, at_work) + jumped);
-  change_all(errors.motions, left_of_motions(last, squared * largest + jumped, squared),
+  for (double &bar : errors.reactions) bar = std::max(bar, of_mesh(std::max(largest, at_work)));
+  change_all(errors.motions, left_of_motions(last, of_mesh(largest), squared),
              [](const double error, const double left) { return std::max(error, left); });
   // The largest penetration may be that of a corner; what remains of it where the body has drawn back is as uncertain as the dents.
   const double deepest = std::max(last.contact.max_penetration, last.contact.max_dent);
@@ -283,11 +284,6 @@ bool is_fixed(const std::vector<Cycle> &cycles, const FixedByLoad &fixed)
   }
   return true;
 }
-
-} // namespace
-
-namespace
-{
 
 /// The force that does a work, by how much a mesh's forces move in the mean.
 double force_of(const double energy, const double moved)

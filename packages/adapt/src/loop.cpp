@@ -112,6 +112,7 @@ Cycle cycle_of(const Solution &s, const double seconds)
   cycle.contact_ends = s.estimate->contact_ends;
   cycle.jumped_force = s.estimate->jumped_force;
   cycle.jumped_energy = s.estimate->jumped_energy;
+  cycle.ends_force = s.estimate->ends_force;
   cycle.misread_force = s.estimate->misread_force;
   cycle.misread_energy = s.estimate->misread_energy;
   cycle.misread_penetration = s.estimate->misread_penetration;

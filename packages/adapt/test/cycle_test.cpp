@@ -32,6 +32,10 @@ TEST(ErrorBars, AreNoLessThanWhatTheLastMeshLeavesOpen)
   EXPECT_NEAR(errors.energy, 2 * 0.02 * 0.02 * 2 / 2, 1e-15);
   EXPECT_NEAR(errors.contact_force, 2 * 0.02 * 0.02 * 10, 1e-15);
   EXPECT_EQ(errors.max_pressure, 0); // nothing but its change and the recovered stress tells of it
+  cycles.back().ends_force = 0.04;   // of the ends of contact
+  errors = observed_errors(cycles);
+  EXPECT_NEAR(errors.contact_force, 0.04, 1e-15);
+  cycles.back().ends_force = 0.001;
   // Data that jump: 0.3 N at a load that has moved by 2 J / 10 N, and an edge that may release 0.01 J.
   cycles.back().jumped_force = 0.3;
   errors = observed_errors(cycles);
@@ -190,6 +194,12 @@ TEST(ErrorBars, OfWhatForcesMoveAreThoseOfForcesTimesHowSoftItIs)
   EXPECT_NEAR(change.displacements[0], 0.4 / (0.1 / 0.02 - 1), 1e-12);
   EXPECT_NEAR(change.obstacle, 0.4 / (0.1 / 0.02 - 1), 1e-12);
   EXPECT_NEAR(change.rotations[0], 3 * force, 1e-15);
+  auto unknown = agree; // no solve has shown how soft it is
+  unknown.back().motions.softness = {{INFINITY}, {INFINITY}, INFINITY};
+  const auto none = observed_errors(unknown).motions;
+  EXPECT_FALSE(std::isfinite(none.displacements[0]) || std::isfinite(none.rotations[0]) ||
+               std::isfinite(none.obstacle));
+  EXPECT_NEAR(none.moments[0], 0.5 * force, 1e-15);
 }
 
 TEST(ErrorBars, OfAMomentDoNotDependOnTheOrderOfRigidSides)

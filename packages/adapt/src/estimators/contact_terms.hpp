@@ -24,6 +24,7 @@ enum Column {
   law,
   gap = law + contact::law_columns, // to the dents that there are
   dent,
+  pressed, // how deep the foundation gives way, with the dents that there are
   normal,
   traction = normal + 3,
   slip = traction + 3,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/adapt/estimators/recovered.hpp"
 
+#include "contact_ends.hpp"
 #include "gap_slopes.hpp"
+#include "highest_order.hpp"
 #include "jumps.hpp"
 #include "rpc/fem/rounding.hpp"
 #include "rpc/fem/stress.hpp"
@@ -62,7 +64,7 @@ RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const cont
   const double accuracy = 1e-7 * result.total.max_pressure;
   const auto owned = rcp(new MultiVector(d.mesh->owned_nodes, c.friction.anywhere ? int(num_columns) : normal + c.dim));
   const LO begin = c.first(side);
-  const auto p = result.pressure, v = result.penetration;
+  const auto p = result.pressure, v = result.penetration, dents = result.dent;
   {
     const auto to = owned->getLocalViewDevice(Tpetra::Access::ReadWrite);
     Kokkos::parallel_for( // a node that misses the obstacle is open: no pressure, no normal
@@ -81,6 +83,7 @@ RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const cont
           contact::to_columns(f, highest_yield, LawAt<decltype(to)>{to, node});
           to(node, int(gap)) = c.gap(i) + c.dent(i);
           to(node, int(dent)) = c.dent(i);
+          to(node, int(pressed)) = dents(i) + elastic;
           for (int j = 0; j < c.dim; ++j) to(node, normal + j) = c.normal(i, j);
         });
     Kokkos::fence();
@@ -232,9 +235,9 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
   const auto bounds = pressure_bounds(mesh.comm(), of.contact);
   estimate.peak.at_bound = highest >= (1 - 1e-12) * bounds.max_val;
   estimate.peak.lowest_bound = bounds.min_val;
-  constexpr int num_sums = 14;
-  double sums[num_sums] = {}, peak = 0, spread = 0, drop = 0, kink = 0, rounded = 0,
-         rounded_depth = 0; // Kokkos' maximum over no facets is -DBL_MAX
+  constexpr int num_sums = 17;
+  double sums[num_sums] = {}, peak = 0, spread = 0, drop = 0, kink = 0, rounded = 0, rounded_depth = 0,
+         deepest = 0; // Kokkos' maximum over no facets is -DBL_MAX
   Kokkos::parallel_reduce(
       "rpc::adapt::recovery", device_range(mesh.num_owned_cells),
       KOKKOS_LAMBDA(const LO cell, double &sum) { sum += squared(cell); }, sums[0]);
@@ -276,7 +279,15 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
     kink = std::max(kink, singular.kink);
     rounded = std::max(rounded, singular.rounded);
     rounded_depth = std::max(rounded_depth, singular.rounded_depth);
+    double depth = 0, most = 0;
+    Kokkos::parallel_reduce("rpc::adapt::highest_order", facets,
+                            HighestOrder{terms, mesh.element.facet().num_vertices()}, Kokkos::Max<double>(depth),
+                            Kokkos::Max<double>(most));
+    deepest = std::max(deepest, depth);
+    rounded = std::max(rounded, most - highest);
     of_side[11] = singular.edges;
+    Kokkos::parallel_reduce("rpc::adapt::contact_ends", facets, ContactEnds{terms, mesh.element.order}, of_side[13],
+                            of_side[14], of_side[15]);
     Kokkos::parallel_reduce("rpc::adapt::jumps", facets, Jumps{terms}, of_side[8], of_side[9], of_side[10]);
     if (!estimate.peak.at_bound) {
       Kokkos::parallel_reduce("rpc::adapt::peak_difference", facets, PeakDifference{terms, highest},
@@ -303,6 +314,10 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
   estimate.peak.gap_jump = all[5] > 0;
   estimate.peak.dented_jump = all[13] > 0;
   estimate.contact_ends = all[6] + unseen.misread_ends;
+  if (all[16] > 0) {
+    const double of_ends = mesh.dim() == 2 ? all[14] : std::sqrt(2 * all[15]);
+    estimate.ends_force = of_ends * of.result.total.contact_length / all[16];
+  }
   estimate.peak.friction_jump = all[11] > 0;
   estimate.peak.friction_edge = all[12] > 0;
   estimate.peak.kink = max_all(mesh.comm(), kink);
@@ -313,7 +328,8 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
   estimate.misread_force = unseen.misread_force;
   estimate.misread_energy = unseen.misread_energy;
   estimate.interpolated = std::abs(unseen.interpolation_work);
-  estimate.misread_penetration = std::max(unseen.misread_penetration, of.result.deepest_on_axis); // (3.5b)
+  estimate.misread_penetration = std::max(
+      {unseen.misread_penetration, of.result.deepest_on_axis, max_all(mesh.comm(), deepest)}); // (3.5b), (10.8c)
   return estimate;
 }
 

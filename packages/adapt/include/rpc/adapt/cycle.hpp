@@ -40,6 +40,7 @@ struct Cycle {
   double recovered_max_pressure = 0; ///< largest difference of the two where the pressure is near its maximum [Pa]
   PressurePeak peak;
   double contact_ends = 0;                    ///< of facets that are partly open, half of them [m]
+  double ends_force = 0;                      ///< see ErrorEstimate [N], in 2D per m
   double jumped_force = 0, jumped_energy = 0; ///< see ErrorEstimate [N], [J], in 2D per m
   double misread_force = 0, misread_energy = 0, misread_penetration = 0; ///< the same, and [m]
   double interpolated = 0;                                               ///< the same [J], in 2D per m

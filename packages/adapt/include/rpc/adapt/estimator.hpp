@@ -57,6 +57,9 @@ struct ErrorEstimate {
   double contact_ends =
       0; ///< half of the facets that are partly open: the mesh does not tell where contact ends [m^(dim-1)]
 
+  double ends_force =
+      0; ///< what that leaves open of forces [N], in 2D per m                                      (10.7g)
+
   // What the mesh leaves open where data of the contact law jump between nodes:                                  (10.7b)
   double jumped_force = 0;  ///< tractions that jump, over half of the facets on which they do [N], in 2D per m
   double jumped_energy = 0; ///< what contact that ends half a facet further in would release [J], in 2D per m
