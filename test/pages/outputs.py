@@ -93,13 +93,18 @@ def fault(expected, actual):
 
 
 def likeness(expected, actual):
-    """Of two lines: that of their words without numbers, in [0, 1], and a tenth of that with them, which tells like rows apart."""
+    """Of two lines: that of their words without numbers, in [0, 1], and a tenth of that with them, which tells like rows apart. Of a line with words
+    left out: the share of its words that the other one has in their order, if that is more."""
     def bare(line):
         return " ".join(NUMBER.sub("#", line.replace(ELISION, "")).split())
 
     def ratio(a, b):
         return difflib.SequenceMatcher(None, a, b, autojunk=False).ratio()
     of_words = ratio(bare(expected), bare(actual))
+    words = bare(expected).split()
+    if ELISION in expected and words:  # the program's line may have any number of words more
+        matching = difflib.SequenceMatcher(None, words, bare(actual).split(), autojunk=False).get_matching_blocks()
+        of_words = max(of_words, sum(block.size for block in matching) / len(words))
     return of_words + 0.1 * ratio(expected, actual) if of_words >= LIKE else 0.0
 
 
@@ -149,6 +154,8 @@ def updated(expected, actual):
             result.append(ELISION)
         if begins and ends and ELISION in expected[n] and line_fault(expected[n], actual[place]) is None:
             result.append(expected[n])
+        elif begins and ends and expected[n].endswith(f" {ELISION}"):  # as many words as before
+            result.append(" ".join([*actual[place].split(" ")[:len(expected[n].split(" ")) - 1], ELISION]))
         elif ends:
             result += actual[(place if begins else previous):place + 1]
         previous = place

@@ -224,7 +224,11 @@ class Outputs(unittest.TestCase):
                 ("...\nfirst line 1\nan old line\nlast line 2\n...", "head\nfirst line 3\nnew lines\nof another kind\nlast line 4\nend",
                  "...\nfirst line 3\nnew lines\nof another kind\nlast line 4\n..."),
                 ("row 1 of 3\n...\nrow 3 of 3\n...", "row 1 of 3\nrow 2 of 3\nrow 3 of 3\nend", "row 1 of 3\n...\nrow 3 of 3\n..."),
-                ("force ... N\n...", "force 1 2 N\nb", "force ... N\n..."), ("a 1\nb 2", "a 3\nb 4\nc 5", "a 3\nb 4\nc 5")]:
+                ("force ... N\n...", "force 1 2 N\nb", "force ... N\n..."),
+                ("...\nerror at t = 1: it is not held. ...\n...\n  results of t = 0.7\n...",
+                 "head\nerror at t = 2: it is not held. Prescribe a displacement of the side, or press it on the foundation by a load at all times of the history\n\n"
+                 "  results of t = 0.8\nend", "...\nerror at t = 2: it is not held. ...\n...\n  results of t = 0.8\n..."),
+                ("a 1\nb 2", "a 3\nb 4\nc 5", "a 3\nb 4\nc 5")]:
             self.assertEqual("\n".join(outputs.updated(expected.splitlines(), actual.splitlines())), new)
         with self.assertRaises(LookupError):
             outputs.updated(["...", "contact force (0, 1) N"], ["energy", "unlike"])
