@@ -167,7 +167,8 @@ def friction_violations(law, points, p, q, e, small):
         slip = np.linalg.norm(e, axis=1)
         rules["slip below the bound"] = np.where(size < bound * (1 - 1e-5) - small[0], slip / small[1], 0)
         across = np.linalg.norm(size[:, None] * e - slip[:, None] * q, axis=1)
-        rules["friction that is not along the slip"] = across / (small[0] * slip + size * small[1] + 1e-300)
+        # Errors of q and of e come in twice, by their lengths too.
+        rules["friction that is not along the slip"] = across / (2 * (small[0] * slip + size * small[1]) + 1e-300)
     return worst(rules, points.place)
 
 
