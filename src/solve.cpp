@@ -70,13 +70,14 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     if (!table || !scene.has_steps()) table.emplace(console, scene.output.verbose);
     if (!std::exchange(points_looked_for, true)) require_inside(scene.output.points, d, scene.model.units);
     table->scene(scene, d, contact);
-    for (const std::string &note : d.mesh->notes) notes.add("mesh: " + note);
     const std::set<std::string> told = told_of_meshes; // sides of one mesh may differ by a number in their names
     const auto is_new = [&](const std::string &note) {
       const std::string without_counts = std::regex_replace(note, std::regex("[0-9]+"), "");
       told_of_meshes.insert(without_counts);
       return told.count(without_counts) == 0;
     };
+    for (const std::string &note : d.mesh->notes)
+      if (is_new(note)) notes.add("mesh: " + note);
     if (const HeldContact held = held_contact(scene, contact); is_new(held.note))
       held.harmless ? notes.add_harmless(held.note) : notes.add(held.note);
     for (const std::string &note : notes_on_mesh(scene, d, contact))

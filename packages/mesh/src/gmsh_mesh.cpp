@@ -13,7 +13,6 @@
 #include <cctype>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -76,15 +75,6 @@ void check_groups(const std::string &where, const GmshContents &contents)
   }
 }
 
-/// What to do about wedges and pyramids that gmsh makes of a geometry: levels of a mesh must be of one kind of cells.
-std::string remedy_for_type(const int number, const bool made)
-{
-  const CellKind *const kind = cell_kind(number);
-  if (!made || !kind || (kind->num_vertices != 5 && kind->num_vertices != 6)) return "";
-  return "; without Recombine there are tetrahedra, and with Mesh.SubdivisionAlgorithm = 2 besides hexahedra; or save "
-         "the mesh as a .msh and give that, whose wedges and pyramids are divided into tetrahedra";
-}
-
 /// Each cell is in one block, once.
 void check_blocks(const std::string &where, const GmshContents &contents)
 {
@@ -103,38 +93,20 @@ void check_blocks(const std::string &where, const GmshContents &contents)
   }
 }
 
-bool of_order_1(const int type)
-{
-  return cell_kind(type)->linear == type;
-}
-
-/// What to do about cells of several kinds that are not divided.
-std::string remedy_for_mixture(const GmshContents &contents, const int one, const int other, const bool made)
-{
-  if (of_order_1(one) != of_order_1(other))
-    return "; they must be of one order: mesh all of them with order 1, or with 2";
-  if (!made) return "";
-  return "; a .geo that recombines may need Mesh.SubdivisionAlgorithm = " + std::to_string(contents.dim - 1) +
-         "; or save the mesh as a .msh and give that, whose cells are divided into " +
-         (contents.dim == 2 ? "triangles" : "tetrahedra");
-}
-
-/// The one kind of cell that the whole body has.
-/// @param made  whether gmsh has made it of a geometry
-Element element_of(const std::string &where, const GmshContents &contents, const bool made)
+/// The one kind of cell that the whole body has: cells of several kinds have been divided, if they are of one order.
+Element element_of(const std::string &where, const GmshContents &contents)
 {
   const GmshElements *first = nullptr;
   for (const auto &elements : contents.elements) {
     const auto &group = contents.groups[elements.group];
     if (group.dim != contents.dim) continue;
-    RPC_REQUIRE_CODE(element_of_gmsh_type(elements.type) || (!made && cell_kind(elements.type)), ExitCode::bad_mesh,
+    RPC_REQUIRE_CODE(cell_kind(elements.type), ExitCode::bad_mesh,
                      where << "cells of type \"" << name_of_gmsh_type(elements.type) << "\" in "
                            << contents.kind[group.dim] << " \"" << group.name << "\"; "
                            << (contents.dim == 2 ? "triangles of 3 or 6 nodes and quadrilaterals of 4, 8 or 9"
-                               : made            ? "tetrahedra of 4 or 10 nodes and hexahedra of 8 or 27"
                                                  : "tetrahedra of 4 or 10 nodes, hexahedra of 8, 20 or 27, wedges "
                                                    "of 6, 15 or 18 and pyramids of 5, 13 or 14")
-                           << " can be read" << remedy_for_type(elements.type, made));
+                           << " can be read");
     if (!first) first = &elements;
   }
   const auto summary = [&](const int type) {
@@ -149,15 +121,21 @@ Element element_of(const std::string &where, const GmshContents &contents, const
     for (const auto &group : names) text += (group == *names.begin() ? "" : ", ") + group;
     return text;
   };
-  std::optional<int> other; // one of another order, if there is one
-  for (const auto &elements : contents.elements)
-    if (contents.groups[elements.group].dim == contents.dim && elements.type != first->type &&
-        (!other || of_order_1(elements.type) != of_order_1(first->type)))
-      other = elements.type;
-  RPC_REQUIRE_CODE(!other, ExitCode::bad_mesh,
-                   where << "cells must be of one kind, got " << summary(first->type) << " and " << summary(*other)
-                         << remedy_for_mixture(contents, first->type, *other, made));
+  const auto other = std::find_if(contents.elements.begin(), contents.elements.end(), [&](const auto &elements) {
+    return contents.groups[elements.group].dim == contents.dim && elements.type != first->type;
+  });
+  RPC_REQUIRE_CODE(other == contents.elements.end(), ExitCode::bad_mesh,
+                   where << "cells must be of one order, 1 or 2, got " << summary(first->type) << " and "
+                         << summary(other->type) << "; mesh all of them with order 1, or with 2");
   return *element_of_gmsh_type(first->type);
+}
+
+bool has_pyramids(const GmshContents &contents)
+{
+  return std::any_of(contents.elements.begin(), contents.elements.end(), [](const GmshElements &elements) {
+    const CellKind *const kind = cell_kind(elements.type);
+    return kind && kind->num_vertices == 5;
+  });
 }
 
 /// The tags of cells' nodes, once each.
@@ -267,7 +245,7 @@ void note_unused_nodes(const GmshContents &contents, TaggedMesh &draft)
 
 } // namespace
 
-MeshData mesh_of_gmsh(const std::string &where, GmshContents contents, const bool any_nodes)
+MeshData mesh_of_gmsh(const std::string &where, GmshContents contents, const bool made)
 {
   TaggedMesh draft;
   draft.where = where;
@@ -276,11 +254,15 @@ MeshData mesh_of_gmsh(const std::string &where, GmshContents contents, const boo
   note_empty_groups(contents);
   check_blocks(draft.where, contents);
   complete_serendipity(where, contents);
-  if (!any_nodes) divide_mixed_cells(draft.where, contents);
-  draft.mesh.element = element_of(draft.where, contents, any_nodes);
+  if (made && has_pyramids(contents))
+    draft.overlap_remedy =
+        ". Of some sizes of cells gmsh makes such meshes where it puts pyramids between quadrilaterals "
+        "and tetrahedra: try another size, or leave out Recombine there";
+  divide_mixed_cells(draft.where, contents, made);
+  draft.mesh.element = element_of(draft.where, contents);
   take_nodes(contents, draft);
   take_cells(contents, draft);
-  if (!any_nodes) drop_height(draft);
+  if (!made) drop_height(draft);
   check_nodes(draft);
   turn_mirrored_cells(draft);
   check_cells(draft);
@@ -289,7 +271,7 @@ MeshData mesh_of_gmsh(const std::string &where, GmshContents contents, const boo
   take_sides(contents, facets, draft);
   take_points(contents, facets, draft);
   take_geometry(contents, facets, draft);
-  if (!any_nodes) note_unused_nodes(contents, draft);
+  if (!made) note_unused_nodes(contents, draft);
   draft.mesh.notes.insert(draft.mesh.notes.begin(), contents.notes.begin(), contents.notes.end());
   return std::move(draft.mesh);
 }

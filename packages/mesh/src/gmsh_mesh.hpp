@@ -7,10 +7,10 @@
 namespace rpc::mesh
 {
 
-/// The mesh that gmsh made, checked: blocks, sides and nodes as read_gmsh() promises.
-/// @param where      beginning of messages
-/// @param any_nodes  whether nodes that no cell uses are no fault: a .geo has points that only serve to construct
+/// The mesh that gmsh made, or that of a file, checked: blocks, sides and nodes as read_gmsh() promises.
+/// @param where  beginning of messages
+/// @param made   whether it was made of a geometry: nodes that no cell uses are no fault then, for points may only serve to construct
 /// @throws rpc::Error (bad_mesh)
-MeshData mesh_of_gmsh(const std::string &where, GmshContents contents, bool any_nodes);
+MeshData mesh_of_gmsh(const std::string &where, GmshContents contents, bool made);
 
 } // namespace rpc::mesh

@@ -224,7 +224,8 @@ std::string mesh_by_field(const GmshRequest &request, const int dim)
   const int fixed = curve_that_asked_for_no_size(curves);
   if (fixed != 0)
     return "curve " + std::to_string(fixed) +
-           " is divided by Transfinite or Layers; where cells are to have sizes of a field, leave these out";
+           " is divided by Transfinite or Layers; where cells are to have sizes of a field, leave these out, or "
+           "set \"Adapt->Meshes\" to nested";
   gmsh::model::mesh::generate(dim);
   gmsh::model::mesh::removeSizeCallback();
   return "";

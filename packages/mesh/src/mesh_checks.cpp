@@ -352,7 +352,7 @@ void check_facets(const TaggedMesh &draft, const Entities &facets)
         const Course one = course_of(draft, facets, f, before), other = course_of(draft, facets, f, k);
         RPC_REQUIRE_CODE(one.opposite == other.opposite, ExitCode::bad_mesh, label(" go in different orders around "));
         RPC_REQUIRE_CODE(one.upward != other.upward, ExitCode::bad_mesh,
-                         label(" overlap: they lie on the same side of "));
+                         label(" overlap: they lie on the same side of ") << draft.overlap_remedy);
       }
   if (element.order == 1) return;
   if (element.dim == 2) return check_middle_nodes(draft, facets, element.facets()); // its edges

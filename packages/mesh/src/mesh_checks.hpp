@@ -20,6 +20,7 @@ struct TaggedMesh {
   std::vector<std::size_t> node_tag; ///< (nodes) the file's numbers, ascending
   std::vector<int> node_of_tag;      ///< (tags) -1 where there is none; empty if tags are far apart
   std::vector<std::size_t> cell_tag; ///< (cells)
+  std::string overlap_remedy;        ///< what to do where cells overlap; empty if nothing is known
 };
 
 /// The node with that tag, -1 if cells use none.

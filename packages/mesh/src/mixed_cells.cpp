@@ -212,7 +212,10 @@ private:
 class Divider
 {
 public:
-  Divider(const std::string &where, GmshContents &contents) : where_(where), contents_(contents) {}
+  Divider(const std::string &where, GmshContents &contents, const bool made)
+      : where_(where), contents_(contents), made_(made)
+  {
+  }
 
   void divide()
   {
@@ -222,9 +225,11 @@ public:
       for (GmshElements &elements : contents_.elements)
         if (of_body(contents_, elements)) divide_cells(elements, places);
     }
-    if (contents_.dim == 3)
+    if (contents_.dim == 3) {
       for (GmshElements &elements : contents_.elements)
-        if (!of_body(contents_, elements)) divide_facets(elements);
+        if (!of_body(contents_, elements)) divide_facets(elements.type, elements.nodes, &elements.tags);
+      for (GmshBoundary &boundary : contents_.boundary) divide_facets(boundary.type, boundary.nodes, nullptr);
+    }
     add_notes();
   }
 
@@ -295,26 +300,27 @@ private:
                   "smaller or better shaped cells there, or a mesh of tetrahedra alone");
   }
 
-  /// Quadrilaterals of sides.
-  void divide_facets(GmshElements &elements) const
+  /// Quadrilaterals of sides, or of the geometry's surfaces.
+  /// @param[in,out] own_tags  null: they have none
+  static void divide_facets(int &type, Tags &own_nodes, Tags *const own_tags)
   {
-    const CellKind *const kind = cell_kind(elements.type);
-    if (!kind || kind->dim != 2 || kind->simplex() || elements.type == kind->serendipity) return;
-    const bool quadratic = elements.type == kind->quadratic;
+    const CellKind *const kind = cell_kind(type);
+    if (!kind || kind->dim != 2 || kind->simplex() || type == kind->serendipity) return;
+    const bool quadratic = type == kind->quadratic;
     const CellKind &triangle = *cell_kind(2);
-    const std::size_t width = kind->num_nodes(elements.type);
+    const std::size_t width = kind->num_nodes(type);
     Tags tags, nodes;
-    for (std::size_t f = 0; f < elements.tags.size(); ++f) {
-      const std::size_t *const own = &elements.nodes[width * f];
+    for (std::size_t f = 0; f < own_nodes.size() / width; ++f) {
+      const std::size_t *const own = &own_nodes[width * f];
       for (const auto &part : triangles_of({0, 1, 2, 3}, own)) {
-        tags.push_back(elements.tags[f]);
+        if (own_tags) tags.push_back((*own_tags)[f]);
         const Tags of_part = nodes_of(*kind, triangle, part, own, quadratic);
         nodes.insert(nodes.end(), of_part.begin(), of_part.end());
       }
     }
-    elements.type = quadratic ? triangle.quadratic : triangle.linear;
-    elements.tags = std::move(tags);
-    elements.nodes = std::move(nodes);
+    type = quadratic ? triangle.quadratic : triangle.linear;
+    own_nodes = std::move(nodes);
+    if (own_tags) *own_tags = std::move(tags);
   }
 
   void add_notes()
@@ -327,13 +333,15 @@ private:
       text += std::to_string(count) + " " + (count == 1 ? first_.at(plural) : plural);
     }
     const bool one = divided_.size() == 1 && divided_.begin()->second == 1;
-    contents_.notes.push_back(text + (one ? " is" : " are") + " divided into " + std::to_string(num_simplices_) +
-                              (contents_.dim == 2 ? " triangles" : " tetrahedra") +
-                              " along diagonals: all cells of a mesh are of one kind");
+    contents_.notes.push_back(
+        text + (one ? " is" : " are") + " divided into " + std::to_string(num_simplices_) +
+        (contents_.dim == 2 ? " triangles" : " tetrahedra") + " along diagonals: all cells of a mesh are of one kind" +
+        (made_ && contents_.dim == 2 ? "; Mesh.SubdivisionAlgorithm = 1; in the .geo makes quadrilaterals alone" : ""));
   }
 
   const std::string &where_;
   GmshContents &contents_;
+  bool made_;
   std::map<std::string, std::size_t> divided_; // cells by what they are called
   std::map<std::string, std::string> first_;   // what one of them is called
   std::size_t num_simplices_ = 0;
@@ -341,7 +349,7 @@ private:
 
 } // namespace
 
-void divide_mixed_cells(const std::string &where, GmshContents &contents)
+void divide_mixed_cells(const std::string &where, GmshContents &contents, const bool made)
 {
   std::set<int> types;
   for (const GmshElements &elements : contents.elements)
@@ -354,7 +362,7 @@ void divide_mixed_cells(const std::string &where, GmshContents &contents)
     needed = needed || kind->num_vertices == 5 || kind->num_vertices == 6;
     quadratic.insert(type == kind->quadratic);
   }
-  if (needed && quadratic.size() == 1) Divider(where, contents).divide();
+  if (needed && quadratic.size() == 1) Divider(where, contents, made).divide();
 }
 
 } // namespace rpc::mesh

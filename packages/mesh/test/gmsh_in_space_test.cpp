@@ -172,6 +172,39 @@ TEST(GmshInSpace, TetrahedraAreDividedIntoHexahedra)
   EXPECT_NEAR(volume_within_sides(mesh), 6, 1e-13);
 }
 
+TEST(GmshInSpace, WedgesAreDividedIntoTetrahedra)
+{
+  const std::string wedges = box("out[] = Extrude {0, 0, 3} { Surface{1}; Layers{2}; Recombine; };\n") + names;
+  for (const int order : {1, 2}) {
+    const MeshData mesh = read_geo(wedges, 1, order);
+    EXPECT_EQ(mesh.element.name(), "P" + std::to_string(order));
+    expect_noted(mesh, {"wedges are divided into", "tetrahedra along diagonals"});
+    EXPECT_NEAR(volume(mesh), 6, 1e-13);
+    EXPECT_NEAR(volume_within_sides(mesh), 6, 1e-13);
+  }
+}
+
+/// Hexahedra below, tetrahedra above: gmsh puts pyramids between them.
+TEST(GmshInSpace, HexahedraBesideTetrahedraAreDividedToo)
+{
+  const std::string both = box("Transfinite Surface {1}; Recombine Surface {1};\n" + lift +
+                               "Layers{2}; Recombine; };\nmore[] = Extrude {0, 0, 1} { Surface{out[0]}; };\n") +
+                           "Physical Volume(\"body\") = {out[1]}; Physical Volume(\"cap\") = {more[1]};\n"
+                           "Physical Surface(\"top\") = {more[0]};\n"
+                           "Physical Surface(\"rest\") = {1, out[2], out[3], out[4], out[5], more[2], more[3], "
+                           "more[4], more[5]};\n";
+  for (const int order : {1, 2}) {
+    const MeshData mesh = read_geo(both, 1, order);
+    EXPECT_EQ(mesh.element.name(), "P" + std::to_string(order));
+    EXPECT_EQ(mesh.blocks, (std::vector<std::string>{"body", "cap"}));
+    expect_noted(mesh, {"hexahedra and", "pyramids are divided into", "tetrahedra along diagonals"});
+    EXPECT_NEAR(volume(mesh), 8, 1e-13);
+    EXPECT_NEAR(volume_within_sides(mesh), 8, 1e-13);
+    ASSERT_EQ(mesh.sides.size(), 2u);
+    EXPECT_NEAR(integrals(mesh, mesh.sides[0]).normal[2], 2, 1e-13);
+  }
+}
+
 TEST(GmshInSpace, CoarserMeshesHaveFewerCells)
 {
   const auto coarse = rpc::mesh::coarser(GmshOptions{octant, .3, 2}, 2);
@@ -190,8 +223,6 @@ TEST(GmshInSpace, RefusalsNameFileRuleAndRemedy)
     expect_error(ExitCode::bad_mesh, parts, [&] { read_geo(text); });
   };
   const std::string solid = box(lift + "};\n"), volume_named = "Physical Volume(\"body\") = {out[1]};\n";
-  refused(box("out[] = Extrude {0, 0, 3} { Surface{1}; Layers{2}; Recombine; };\n") + volume_named,
-          {"\"Prism 18\"", "without Recombine there are tetrahedra", "Mesh.SubdivisionAlgorithm = 2"});
   expect_noted(read_geo(solid + volume_named +
                         "more[] = Extrude {0, 0, 1} { Surface{out[0]}; };\n"
                         "Physical Volume(\"cap\") = {more[1]}; Physical Surface(\"between\") = {out[0]};\n"),

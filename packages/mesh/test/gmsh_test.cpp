@@ -94,6 +94,19 @@ TEST(Gmsh, MakesAllFourElements)
     }
 }
 
+/// gmsh's simple recombination leaves some triangles.
+TEST(Gmsh, QuadrilateralsBesideTrianglesAreDivided)
+{
+  const std::string some = "Recombine Surface {1}; Mesh.RecombinationAlgorithm = 0;\n";
+  for (const int order : {1, 2}) {
+    const MeshData mesh = read_geo(square() + some + body + "Physical Curve(\"right\") = {2};\n", .3, order);
+    EXPECT_EQ(mesh.element.name(), "P" + std::to_string(order));
+    EXPECT_NEAR(area(mesh), 1, 1e-14);
+    ASSERT_EQ(mesh.sides.size(), 1u);
+    expect_noted(mesh, {"quadrilaterals are divided into", "triangles along diagonals", "SubdivisionAlgorithm = 1"});
+  }
+}
+
 TEST(Gmsh, OrderIsTwoUnlessAskedForWhateverTheGeoSays)
 {
   EXPECT_EQ(read_geo(square() + body + "Mesh.ElementOrder = 1;").element.order, 2);

@@ -220,10 +220,9 @@ TEST(Msh, CellsMustBeOfOneKindThatCanBeRead)
   expect_refused(squares_with([](Msh &msh) { msh.elements.push_back("5 4 2 0 0 1 2 4 5"); }),
                  {"\"body\"", "its volume is 0"});
   expect_refused(squares_with([](Msh &msh) { msh.elements[3] = "4 9 2 4 0 2 3 6 1 4 5"; }),
-                 {"one kind", "1 of type \"Quadrilateral 4\" in \"steel\"", "1 of type \"Triangle 6\" in \"rubber\"",
-                  "one order"});
+                 {"one order", "1 of type \"Quadrilateral 4\" in \"steel\"", "1 of type \"Triangle 6\" in \"rubber\""});
   expect_refused(squares_with([](Msh &msh) { msh.elements[3] = "4 16 2 4 0 2 3 6 5 1 1 1 1"; }),
-                 {"one kind", "\"Quadrilateral 9\" in \"rubber\""});
+                 {"one order", "\"Quadrilateral 9\" in \"rubber\""});
   expect_refused(squares_with([](Msh &msh) { msh.elements[0] = "1 8 2 1 0 1 4 5"; }),
                  {"\"Line 3\"", "\"left\"", "order 1"});
 }

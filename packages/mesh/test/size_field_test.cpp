@@ -325,7 +325,7 @@ TEST(SizeField, RefusesAGeoThatFixesItsDivision)
   const std::string square = "Point(1) = {0, 0, 0, .5}; Point(2) = {1, 0, 0, .5}; Line(1) = {1, 2};\n";
   const auto refused = [](const std::string &text) {
     const ScratchFile file("fixed.geo", text + "Physical Surface(\"body\") = {Surface{:}};\n");
-    expect_error(ExitCode::bad_mesh, {"fixed.geo\": gmsh: curve ", "Transfinite or Layers"}, [&] {
+    expect_error(ExitCode::bad_mesh, {"fixed.geo\": gmsh: curve ", "Transfinite or Layers", "nested"}, [&] {
       made(GmshOptions{file.path(), 1, 1}, constant(.1));
     });
   };

@@ -64,7 +64,7 @@ void start_gmsh_early();
 int gmsh_dimension(const GmshOptions &options);
 
 /// Reads a mesh of triangles, quadrilaterals, tetrahedra or hexahedra, of order 1 or 2 (full: 9 and 27 nodes), curved where the
-/// file's geometry is. One rank only.
+/// file's geometry is. Cells of several kinds, wedges and pyramids are divided into triangles or tetrahedra. One rank only.
 ///
 /// A mesh is in space if there are volumes. Physical surfaces, in space volumes, become blocks and physical curves, in space
 /// surfaces, sides, by their names, or where they have none by their numbers, in the order of their tags; groups of lower dimension
@@ -73,7 +73,7 @@ int gmsh_dimension(const GmshOptions &options);
 ///
 /// With `sizes`, a .geo's own cell sizes are out of play, but for an explicit Mesh.MeshSizeFromCurvature. Quadrilaterals
 /// come from triangles, by recombination and division. Equal options give equal meshes, bit by bit.
-/// @throws rpc::Error (bad_mesh) with file, group, cell or node concerned: gmsh's own complaint or end; no cells; cells of a plane mesh off the plane z = 0; cells of different or unsupported kinds, in two blocks,
+/// @throws rpc::Error (bad_mesh) with file, group, cell or node concerned: gmsh's own complaint or end; no cells; cells of a plane mesh off the plane z = 0; cells of different orders or unsupported kinds, in two blocks,
 ///         degenerate, inverted or overlapping; a side with facets that belong to no cell or to two; nodes that no cell uses,
 ///         or two at one place; sizes that ask for too many cells (in space 2 million vertices); a field of sizes that are
 ///         not > 0 and finite, or that asks for more than 5 million cells, or is of another dimension than the body, or comes with a .geo that
