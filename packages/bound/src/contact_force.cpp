@@ -10,71 +10,89 @@ namespace rpc::bound
 namespace
 {
 
-constexpr const char *no_limit_at_its_end =
-    "the side ends where displacements are prescribed along its normal, and no yield stress limits the pressure there";
+/// Why no functional of the stress is the force of a side; empty if there is one.
+std::string without_press(const ContactFacets &c)
+{
+  for (const std::array<double, 2> &nu : c.normal)
+    if (std::abs(nu[0] - c.normal[0][0]) + std::abs(nu[1] - c.normal[0][1]) > 1e-10) return "the side's normals differ";
+  return "";
+}
+std::string without_press(const SpaceContact &c)
+{
+  return has_facets(c) ? "" : "the side has no facets";
+}
+
+const std::vector<double> &sizes_of(const ContactFacets &c)
+{
+  return c.length;
+}
+const std::vector<double> &sizes_of(const SpaceContact &c)
+{
+  return c.area;
+}
+
+/// Parts of a facet's size that are no less than the integrals of the positive and of the negative part of 1 - w_nu, the sum of the element's
+/// functions of its nodes where w is 0.
+struct Missed {
+  double positive = 0, negative = 0;
+};
+template <class IsCut>
+Missed missed(const ContactFacets &c, const std::size_t f, const IsCut &is_cut)
+{
+  const int ends = is_cut(c.ends[f][0]) + is_cut(c.ends[f][1]);
+  return {ends * (c.order == 1 ? 1. / 2 : 5. / 24), ends * (c.order == 1 ? 0 : 1. / 24)};
+}
+template <class IsCut>
+Missed missed(const SpaceContact &c, const std::size_t f, const IsCut &is_cut)
+{
+  Missed of;
+  for (const Point &corner : c.corner[f]) of.positive += is_cut(corner) / 3.;
+  return of;
+}
 
 } // namespace
 
-double largest_force(const ContactFacets &c)
-{
-  double length = 0;
-  for (const double of_facet : c.length) length += of_facet;
-  return length * largest_pressure(c);
-}
-
-UnitPress unit_press(const analysis::Problem &problem, const double time, const std::vector<ContactFacets> &sides,
-                     const int k, const solver::LinearSolverOptions &options)
+template <class Side>
+UnitPress unit_press(const analysis::Problem &problem, const double time, const std::vector<Side> &sides, const int k,
+                     const solver::LinearSolverOptions &options)
 {
   const mesh::Mesh &mesh = *problem.discretization().mesh;
-  const ContactFacets &c = sides[k];
-  const analysis::Model model = problem.model().seen_at(time);
+  const Side &c = sides[k];
   UnitPress press;
-  for (const std::array<double, 2> &nu : c.normal)
-    if (std::abs(nu[0] - c.normal[0][0]) + std::abs(nu[1] - c.normal[0][1]) > 1e-10)
-      press.missing = "the side's normals differ";
-  const double near = near_places(mesh);
-  const std::vector<Point> cut = cut_places(model, mesh, sides, k);
-  const double most = largest_pressure(c);
-  if (!cut.empty() && std::isinf(most)) press.missing = no_limit_at_its_end;
-  if (!press.missing.empty()) return press;
-  // int p (1 - w_nu) over the facets at cut nodes: 1 - w_nu is the element's function of the node there.
-  const double positive = c.order == 1 ? 1. / 2 : 5. / 24, negative = c.order == 1 ? 0 : 1. / 24;
-  for (std::size_t f = 0; f < c.facet.size(); ++f)
-    for (int end = 0; end < 2; ++end)
-      for (const Point &place : cut)
-        if (is_at(c.ends[f][end], place, near)) {
-          press.high += most * c.length[f] * positive;
-          press.low -= most * c.length[f] * negative;
-        }
-  solve_press(problem, time, sides, k, cut, options, press);
-  return press;
-}
-
-double largest_force(const SpaceContact &c)
-{
-  double area = 0;
-  for (const double of_facet : c.area) area += of_facet;
-  return area * largest_pressure(c);
-}
-
-UnitPress unit_press(const analysis::Problem &problem, const double time, const std::vector<SpaceContact> &sides,
-                     const int k, const solver::LinearSolverOptions &options)
-{
-  const mesh::Mesh &mesh = *problem.discretization().mesh;
-  const SpaceContact &c = sides[k];
-  UnitPress press;
-  if (!has_facets(c)) press.missing = "the side has no facets";
+  press.missing = without_press(c);
   if (!press.missing.empty()) return press;
   const double near = near_places(mesh), most = largest_pressure(c);
   const std::vector<Point> cut = cut_places(problem.model().seen_at(time), mesh, sides, k);
-  if (!cut.empty() && std::isinf(most)) press.missing = no_limit_at_its_end;
-  if (!press.missing.empty()) return press;
-  for (std::size_t f = 0; f < c.facet.size(); ++f)
-    for (const Point &corner : c.corner[f])
-      for (const Point &place : cut)
-        if (is_at(corner, place, near)) press.high += most * c.area[f] / 3;
+  if (!cut.empty() && std::isinf(most)) {
+    press.missing = "the side ends where displacements are prescribed along its normal, and no yield stress limits the "
+                    "pressure there";
+    return press;
+  }
+  const auto is_cut = [&](const Point &x) {
+    return std::any_of(cut.begin(), cut.end(), [&](const Point &place) { return is_at(x, place, near); });
+  };
+  for (std::size_t f = 0; f < c.facet.size() && !cut.empty(); ++f) {
+    const Missed of = missed(c, f, is_cut);
+    press.high += most * sizes_of(c)[f] * of.positive;
+    press.low -= most * sizes_of(c)[f] * of.negative;
+  }
   solve_press(problem, time, sides, k, cut, options, press);
   return press;
 }
+
+template <class Side>
+double largest_force(const Side &c)
+{
+  double size = 0;
+  for (const double of_facet : sizes_of(c)) size += of_facet;
+  return size * largest_pressure(c);
+}
+
+template UnitPress unit_press(const analysis::Problem &, double, const std::vector<ContactFacets> &, int,
+                              const solver::LinearSolverOptions &);
+template UnitPress unit_press(const analysis::Problem &, double, const std::vector<SpaceContact> &, int,
+                              const solver::LinearSolverOptions &);
+template double largest_force(const ContactFacets &);
+template double largest_force(const SpaceContact &);
 
 } // namespace rpc::bound

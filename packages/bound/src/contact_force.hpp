@@ -23,13 +23,13 @@ inline double near_places(const mesh::Mesh &mesh)
 
 /// The displacement of the body that is 1 along the normal of a contact side and 0 on all others, with the least energy. Collective.
 /// @param sides  all contact sides   @param k  which of them
-UnitPress unit_press(const analysis::Problem &problem, double time, const std::vector<ContactFacets> &sides, int k,
-                     const solver::LinearSolverOptions &options);
-UnitPress unit_press(const analysis::Problem &problem, double time, const std::vector<SpaceContact> &sides, int k,
+/// @tparam Side  ContactFacets in the plane, SpaceContact in space
+template <class Side>
+UnitPress unit_press(const analysis::Problem &problem, double time, const std::vector<Side> &sides, int k,
                      const solver::LinearSolverOptions &options);
 
 /// The most that the pressures of a side can come to; infinite where they have no limit [N], in 2D per m.
-double largest_force(const ContactFacets &c);
-double largest_force(const SpaceContact &c);
+template <class Side>
+double largest_force(const Side &c);
 
 } // namespace rpc::bound
