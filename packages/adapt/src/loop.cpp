@@ -49,15 +49,17 @@ Solution with_estimate(const Task &task, const Listener &listener, const Run &ru
   Solution s;
   auto all = static_cast<const analysis::Listener &>(listener);
   const bool guaranteed = task.adapt.bound == ErrorBound::guaranteed;
+  bound::FacetsOfMesh facets;
   if (guaranteed)
     all.step.start = [&](const analysis::Problem &problem, const analysis::Step &step) {
-      bound::require_covered(problem, step);
+      facets = bound::require_covered(problem, step);
       require_coverable_meshes(task, problem.discretization().mesh->element);
       if (listener.step.start) listener.step.start(problem, step);
     };
   all.solved = [&](const analysis::Problem &problem, analysis::Solution &found) {
     if (guaranteed && found.has_results())
-      s.bound = bound::energy_bound(problem, found, task.linear_solver, bound::bound_rules.steps);
+      s.bound = bound::energy_bound(problem, found, task.linear_solver, bound::bound_rules.steps, facets);
+    facets.reset(); // memory
     const contact::ContactNodes &points = found.step.contact;
     const Comm &comm = found.discretization.mesh->comm();
     const auto &pressure = found.contact.pressure;

@@ -94,7 +94,7 @@ void require_covered(const analysis::Task &task)
   require_same_everywhere(task.model.seen_at(task.has_steps() ? task.steps.times.front() : task.time));
 }
 
-void require_covered(const analysis::Problem &problem, const analysis::Step &step)
+FacetsOfMesh require_covered(const analysis::Problem &problem, const analysis::Step &step)
 {
   const fem::Discretization &d = problem.discretization();
   const analysis::Model model = problem.model().seen_at(step.time);
@@ -106,9 +106,10 @@ void require_covered(const analysis::Problem &problem, const analysis::Step &ste
                                            "\" has a projected dilatation; where Poisson's ratio allows it, "
                                            "\"Dilatation\" = full is covered");
   if (d.dim() == 3) {
-    const std::string reason = not_covered_in_space(problem, step);
+    FacetsOfMesh facets;
+    const std::string reason = not_covered_in_space(problem, step, facets);
     require_of_deck(reason.empty(), reason);
-    return;
+    return facets;
   }
   const CellInput in = cell_input(problem, model);
   const double distortion = max_all(d.mesh->comm(), largest_distortion(in, d.mesh->element));
@@ -116,6 +117,7 @@ void require_covered(const analysis::Problem &problem, const analysis::Step &ste
                                           " are curved, or quadrilaterals whose opposite sides are not parallel (by " +
                                           shown(distortion) + " of a cell)");
   boundary_of(problem, step, in.facets, {HostView<double *>("rpc::bound::none", step.contact.size()), {}});
+  return {};
 }
 
 namespace
@@ -158,16 +160,13 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   std::vector<double> falls;
   for (int step = 0; step < steps; ++step) falls.push_back(descent.step());
   const StressDifference left = stress_difference(in, comm, t, *on_overlap, of_cell);
-  const double stress_norm = take_descent(comm, in, boundary.sides, contact, left, falls, lift, of_cell, bound);
+  const double rho = take_descent(comm, in, boundary.sides, contact, left, falls, lift, of_cell, bound);
   if (!bound.missing.empty()) return bound;
-  const double rho = std::sqrt(stress_norm * stress_norm / 4 + contact.gap); // (13.13)
   const auto work_with = [&](const BoundaryTractions &tractions, const Vector &w) {
     return work_of(d, known_moments(in, tractions), in, w);
   };
   const auto squared = [&](const Vector &x) { return fem::internal_work(d, model.materials, x).energy_norm_squared; };
-  add_forces(
-      problem, s, options, boundary.sides, rho, *u, [&](const Vector &w) { return work_with(boundary.tractions, w); },
-      [&](const Vector &w) { return work_with(all, w); }, squared, bound);
+  add_forces(problem, s, options, boundary.sides, rho, *u, boundary.tractions, all, work_with, squared, bound);
   return bound;
 }
 
@@ -186,14 +185,16 @@ const char *name_of(const EnergyBound::Of of)
 }
 
 EnergyBound energy_bound(const analysis::Problem &problem, const analysis::StepSolution &solution,
-                         const solver::LinearSolverOptions &options, const int steps)
+                         const solver::LinearSolverOptions &options, const int steps, const FacetsOfMesh &facets)
 {
   EnergyBound bound;
   double seconds = 0;
   {
     const Timed phase("bound", seconds);
-    bound = problem.discretization().dim() == 3 ? bound_in_space(problem, solution, options, 2 * steps)
-                                                : bound_of(problem, solution, options, steps);
+    bound = problem.discretization().dim() == 3
+                ? bound_in_space(problem, solution, options, 2 * steps,
+                                 facets ? *facets : *require_covered(problem, solution.step))
+                : bound_of(problem, solution, options, steps);
   }
   bound.seconds = seconds;
   return bound;

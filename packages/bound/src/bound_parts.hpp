@@ -84,7 +84,7 @@ std::vector<std::pair<LO, double>> gaps_of_cells(const Input &in, const std::vec
 /// @param left     at its end   @param falls  of the energy by its steps [J]
 /// @param lift     norm of the stresses that take up loads beyond the order
 /// @param of_cell  (owned cells) parts of left.energy
-/// @return norm of sigma - C eps(u)
+/// @return rho of (13.13) [J^(1/2)]
 template <class Input, class Side, class Terms>
 double take_descent(const Comm &comm, const Input &in, const std::vector<Side> &sides, const Terms &contact,
                     const StressDifference &left, const std::vector<double> &falls, const double lift,
@@ -106,7 +106,7 @@ double take_descent(const Comm &comm, const Input &in, const std::vector<Side> &
                               gaps_of_cells(in, sides, contact), bound.energy_norm * bound.energy_norm);
   if (!(bound.imbalance <= 1e-8))
     bound.missing = "cells are out of balance by " + shown(bound.imbalance) + " of their forces";
-  return stress_norm;
+  return std::sqrt(stress_norm * stress_norm / 4 + contact.gap);
 }
 
 /// a(u, w), by norms of sums of alike size. @param squared  gives |x|^2
@@ -124,19 +124,20 @@ double energy_product(const Squared &squared, const Vector &u, const Vector &w)
 
 /// The intervals of contact forces. Collective.                                                  doc/bounds.md (13.14), (13.15)
 /// @param rho  of (13.13) [J^(1/2)]   @param u  (owned dofs) u^
-/// @param of_loads, of_all  work of the loads, and of these and contact's tractions, with a displacement (owned dofs) [J]
-/// @param squared  its |w|^2
-template <class Side, class Loads, class All, class Squared>
+/// @param loads, all  without and with contact's tractions
+/// @param work  of tractions and the body force with a displacement (owned dofs) [J]   @param squared  its |w|^2
+template <class Side, class Work, class Squared>
 void add_forces(const analysis::Problem &problem, const analysis::StepSolution &s,
                 const solver::LinearSolverOptions &options, const std::vector<Side> &sides, const double rho,
-                const Vector &u, const Loads &of_loads, const All &of_all, const Squared &squared, EnergyBound &bound)
+                const Vector &u, const BoundaryTractions &loads, const BoundaryTractions &all, const Work &work,
+                const Squared &squared, EnergyBound &bound)
 {
   for (std::size_t k = 0; k < sides.size(); ++k) {
     const UnitPress press = unit_press(problem, s.step.time, sides, static_cast<int>(k), options);
     ForceBound force;
     force.missing = press.missing;
     if (press.missing.empty()) {
-      const double middle = of_loads(*press.w) - (of_all(*press.w) + energy_product(squared, u, *press.w)) / 2;
+      const double middle = work(loads, *press.w) - (work(all, *press.w) + energy_product(squared, u, *press.w)) / 2;
       const double room = rho * std::sqrt(squared(*press.w));
       force.lower = std::max(0., middle - room + press.low);
       force.upper = std::min(largest_force(sides[k]), middle + room + press.high);

@@ -177,7 +177,7 @@ struct ForcesOfHexahedra {
 struct MeanMomentsOfHexahedra {
   HexahedraInput in;
   FieldOfHexahedra field;
-  DeviceView<double ***> mean;
+  Tractions mean; // (facets * 9)
 
   KOKKOS_FUNCTION void operator()(const LO f) const
   {
@@ -205,7 +205,8 @@ struct MeanMomentsOfHexahedra {
         const double w = in.facet_weight(q) / both * (toward > 0 ? 1 : -1);
         for (int a = 0; a < 3; ++a)
           for (int i = 0; i < 3; ++i)
-            mean(f, a, i) += w * in.on_facet(q, a) * (sigma[i][0] * n[0] + sigma[i][1] * n[1] + sigma[i][2] * n[2]);
+            mean((static_cast<std::size_t>(f) * 3 + a) * 3 + i) +=
+                w * in.on_facet(q, a) * (sigma[i][0] * n[0] + sigma[i][1] * n[1] + sigma[i][2] * n[2]);
       }
     }
   }
@@ -319,9 +320,9 @@ DeviceView<double ***> nodal_forces(const HexahedraInput &in, const fem::Discret
   return Q;
 }
 
-DeviceView<double ***> mean_moments(const HexahedraInput &in, const Vector &u)
+Tractions mean_moments(const HexahedraInput &in, const Vector &u)
 {
-  DeviceView<double ***> mean("rpc::bound::mean_moments", in.facets.size(), 3, 3);
+  const Tractions mean("rpc::bound::mean_moments", static_cast<std::size_t>(in.facets.size()) * 9);
   FieldOfHexahedra field = field_of_hexahedra(in, u);
   field.flattened = false;
   Kokkos::parallel_for("rpc::bound::mean_moments_of_hexahedra", device_range(in.facets.size()),

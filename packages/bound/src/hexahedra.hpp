@@ -143,7 +143,7 @@ void add_bends_of_faces(const HexahedraInput &in, const Vector &u, const SpaceFo
 /// Forces of the vertices on the tetrahedra, by which these are in balance, and which come to those of the hexahedra.   doc/bounds.md (13.9e)
 /// @param u  (overlap dofs)
 DeviceView<double ***> nodal_forces(const HexahedraInput &in, const fem::Discretization &d, const Vector &u);
-DeviceView<double ***> mean_moments(const HexahedraInput &in, const Vector &u);
+Tractions mean_moments(const HexahedraInput &in, const Vector &u);
 StressDifference stress_difference(const HexahedraInput &in, const Comm &comm, const SpaceForms &forms,
                                    const Tractions &t, const FieldOfHexahedra &u, const DeviceView<double *> &of_cell);
 

@@ -31,7 +31,7 @@ void take_areas_of_halves(SpaceContact &c)
 
 } // namespace
 
-std::string not_covered_of_hexahedra(const analysis::Problem &problem, const analysis::Step &step)
+std::string not_covered_of_hexahedra(const analysis::Problem &problem, const analysis::Step &step, FacetsOfMesh &facets)
 {
   const analysis::Model model = problem.model().seen_at(step.time);
   const SplitHexahedra split = split_hexahedra(problem.discretization());
@@ -40,21 +40,22 @@ std::string not_covered_of_hexahedra(const analysis::Problem &problem, const ana
     return "a part of a hexahedron that is split into six tetrahedra has " + shown(split.smallest) +
            " times the volume of a sixth of it; it has to be more than " + shown(least);
   const fem::Discretization d = fem::discretize(split.mesh);
-  SpaceInput in = space_input(d, model);
+  facets = std::make_shared<SpaceFacets>(space_facets_of(d));
+  SpaceInput in = space_input(d, model, *facets);
   in.of_hexahedra = true;
   boundary_of(d, model, step, in, {HostView<double *>("rpc::bound::none", step.contact.size()), {}});
   return "";
 }
 
 EnergyBound bound_of_hexahedra(const analysis::Problem &problem, const analysis::StepSolution &s,
-                               const solver::LinearSolverOptions &options, const int steps)
+                               const solver::LinearSolverOptions &options, const int steps, const SpaceFacets &facets)
 {
   const fem::Discretization &of_run = problem.discretization();
   const Comm &comm = of_run.mesh->comm();
   const analysis::Model model = problem.model().seen_at(s.step.time);
   const SplitHexahedra split = split_hexahedra(of_run);
   const fem::Discretization d = fem::discretize(split.mesh);
-  SpaceInput tetrahedra = space_input(d, model);
+  SpaceInput tetrahedra = space_input(d, model, facets);
   tetrahedra.reference = reference_stress(d.mesh->element);
   find_kinds(tetrahedra, comm);
   std::vector<std::string> flat;
@@ -86,22 +87,13 @@ EnergyBound bound_of_hexahedra(const analysis::Problem &problem, const analysis:
   Solved galerkin = timed_galerkin_solution(problem, s, options, in, all, bound);
   if (!bound.missing.empty()) return bound;
 
-  double stress_norm = 0;
-  { // what follows has the memory of the descent
-    const SpaceExchanges exchanges = space_exchanges(*d.mesh, in.facets);
-    const Tractions t = equilibrated(in, all, galerkin.Q, mean_moments(in, *fem::on_overlap(of_run, *galerkin.u)),
-                                     in.around, exchanges);
-    galerkin.Q = {}; // memory
-    const DeviceView<double *> of_part("rpc::bound::of_part", in.num_owned_cells);
-    const SpaceForms forms = cell_forms(in, *on_overlap);
-    add_bends_of_faces(in, *on_overlap, forms);
-    const RingSolves rings(in, all, forms, exchanges);
-    SpaceDescent descent(in, forms, rings, comm, t);
-    std::vector<double> falls;
-    for (int step = 0; step < steps; ++step) falls.push_back(descent.step());
-    const StressDifference left = stress_difference(in, comm, forms, t, field, of_part);
-    stress_norm = take_descent(comm, in, boundary.sides, contact, left, falls, lift, of_part, bound);
-  }
+  const SpaceForms forms = cell_forms(in, *on_overlap);
+  add_bends_of_faces(in, *on_overlap, forms);
+  const Descended after = descended(in, *d.mesh, in.around, all, forms, galerkin.Q,
+                                    mean_moments(in, *fem::on_overlap(of_run, *galerkin.u)), steps);
+  const DeviceView<double *> of_part("rpc::bound::of_part", in.num_owned_cells);
+  const StressDifference left = stress_difference(in, comm, forms, after.t, field, of_part);
+  const double rho = take_descent(comm, in, boundary.sides, contact, left, after.falls, lift, of_part, bound);
   const DeviceView<double *> of_cell("rpc::bound::of_cell", of_run.mesh->num_owned_cells);
   const auto parts = bound.squared;
   Kokkos::parallel_for(
@@ -111,7 +103,6 @@ EnergyBound bound_of_hexahedra(const analysis::Problem &problem, const analysis:
   Kokkos::fence();
   bound.squared = of_cell;
   if (!bound.missing.empty()) return bound;
-  const double rho = std::sqrt(stress_norm * stress_norm / 4 + contact.gap); // (13.13)
   const auto work_with = [&](const BoundaryTractions &tractions, const Vector &w) {
     const RCP<const Vector> x = fem::on_overlap(of_run, w);
     const FieldOfHexahedra of_w = field_of_hexahedra(in, *x);
@@ -121,9 +112,7 @@ EnergyBound bound_of_hexahedra(const analysis::Problem &problem, const analysis:
     const RCP<const Vector> x = fem::on_overlap(of_run, w);
     return 2 * work_of_hexahedra(in, comm, field_of_hexahedra(in, *x)).energy;
   };
-  add_forces(
-      problem, s, options, boundary.sides, rho, *u, [&](const Vector &w) { return work_with(boundary.tractions, w); },
-      [&](const Vector &w) { return work_with(all, w); }, squared, bound);
+  add_forces(problem, s, options, boundary.sides, rho, *u, boundary.tractions, all, work_with, squared, bound);
   return bound;
 }
 

@@ -9,11 +9,13 @@ namespace rpc::bound
 {
 
 /// Why the bound of a body of hexahedra is not known; empty if it is.
+/// @param[out] facets  of the tetrahedra
 /// @throws rpc::Error (bad_input) where boundary conditions are not covered
-std::string not_covered_of_hexahedra(const analysis::Problem &problem, const analysis::Step &step);
+std::string not_covered_of_hexahedra(const analysis::Problem &problem, const analysis::Step &step,
+                                     FacetsOfMesh &facets);
 
 /// @param steps  of conjugate gradients
 EnergyBound bound_of_hexahedra(const analysis::Problem &problem, const analysis::StepSolution &s,
-                               const solver::LinearSolverOptions &options, int steps);
+                               const solver::LinearSolverOptions &options, int steps, const SpaceFacets &facets);
 
 } // namespace rpc::bound

@@ -12,21 +12,24 @@ namespace rpc::bound
 
 inline double inner_of(const std::vector<double> &x, const std::vector<double> &y)
 {
-  double sum = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) sum += x[i] * y[i];
-  return sum;
+  double parts[4] = {}; // no addition waits for another one
+  const std::size_t n = x.size(), whole = n - n % 4;
+  for (std::size_t i = 0; i < whole; i += 4)
+    for (int k = 0; k < 4; ++k) parts[k] += x[i + k] * y[i + k];
+  for (std::size_t i = whole; i < n; ++i) parts[0] += x[i] * y[i];
+  return (parts[0] + parts[1]) + (parts[2] + parts[3]);
 }
 
 /// The least of a quadratic function x . H x/2 - f . x between bounds: conjugate gradients on the face, with steps that leave it (Dostal, SIAM
-/// J. Optim. 7, 1997). It ends at rounding: a bound changes in proportion to what is left, which would show between one rank and two. What
+/// J. Optim. 7, 1997). It ends near rounding: a bound changes in proportion to what is left, which would show between one rank and two. What
 /// steps have made of the gradient drifts from it, which shows where H has large eigenvalues beside small ones; then it goes on from the gradient.
 /// @param fit  has apply(x, y), y <- H x; gradient(x, y), y <- H x - f, where that is small accurately; right_side(), f; start(); low() and high();
 /// scale(), which makes about 1 of the diagonal
 template <class Fit>
 std::vector<double> least_in_box(const Fit &fit)
 {
-  // Squares of what may be left of the gradient, over that of f and over what was left at a look; both scaled.
-  constexpr double enough = 1e-26, enough_after_look = 1e-10;
+  // Squares of what may be left of the gradient, over that of f, over what was left at a look, and over the first one; all scaled.
+  constexpr double enough = 1e-26, enough_after_look = 1e-10, enough_of_first = 1e-22;
   const std::vector<double> &scale = fit.scale();
   const std::size_t n = scale.size();
   std::vector<double> x(n), g(n), y(n), Hy(n), free(n), chopped(n), scaled(n), lower(n), upper(n);
@@ -55,7 +58,7 @@ std::vector<double> least_in_box(const Fit &fit)
     for (std::size_t i = 0; i < n; ++i) g[i] *= scale[i];
   };
   look();
-  double wanted = 0,
+  double wanted = 0, first = 0,
          before = std::numeric_limits<double>::infinity(); // squares: what may be left, what was left at a look
   for (std::size_t i = 0; i < n; ++i) wanted += enough * std::pow(scale[i] * fit.right_side()[i], 2);
   bool restart = true, looked = true;
@@ -67,8 +70,11 @@ std::vector<double> least_in_box(const Fit &fit)
     }
     const double ff = inner_of(free, free), cc = inner_of(chopped, chopped);
     if (looked) {
-      if (ff + cc >= before / 4 || ff + cc == 0) break;
-      if (before < std::numeric_limits<double>::infinity()) wanted = enough_after_look * (ff + cc);
+      if (ff + cc >= before / 4 || ff + cc <= enough_of_first * first) break;
+      if (before < std::numeric_limits<double>::infinity())
+        wanted = std::max(enough_after_look * (ff + cc), enough_of_first * first / 4);
+      else
+        first = ff + cc;
       before = ff + cc;
       looked = false;
     } else if (ff + cc <= wanted) {
@@ -94,21 +100,23 @@ std::vector<double> least_in_box(const Fit &fit)
     restart = false;
     apply(y, Hy);
     const double curvature = inner_of(y, Hy), length = inner_of(g, y) / curvature;
-    double most = std::numeric_limits<double>::infinity();
+    bool within = true;
+    for (std::size_t i = 0; i < n; ++i)
+      within = within && x[i] - length * y[i] >= lower[i] && x[i] - length * y[i] <= upper[i];
+    if (within) {
+      for (std::size_t i = 0; i < n; ++i) {
+        x[i] -= length * y[i];
+        g[i] -= length * Hy[i];
+        free[i] = x[i] > lower[i] && x[i] < upper[i] ? g[i] : 0;
+      }
+      const double beta = inner_of(free, Hy) / curvature;
+      for (std::size_t i = 0; i < n; ++i) y[i] = free[i] - beta * y[i];
+      continue;
+    }
+    double most = length;
     for (std::size_t i = 0; i < n; ++i) {
       if (y[i] > 0) most = std::min(most, (x[i] - lower[i]) / y[i]);
       if (y[i] < 0) most = std::min(most, (x[i] - upper[i]) / y[i]);
-    }
-    if (length <= most) {
-      for (std::size_t i = 0; i < n; ++i) {
-        x[i] = std::clamp(x[i] - length * y[i], lower[i], upper[i]);
-        g[i] -= length * Hy[i];
-      }
-      double along = 0;
-      for (std::size_t i = 0; i < n; ++i) along += (x[i] > lower[i] && x[i] < upper[i] ? g[i] : 0) * Hy[i];
-      const double beta = along / curvature;
-      for (std::size_t i = 0; i < n; ++i) y[i] = (x[i] > lower[i] && x[i] < upper[i] ? g[i] : 0) - beta * y[i];
-      continue;
     }
     for (std::size_t i = 0; i < n; ++i) {
       x[i] = std::clamp(x[i] - most * y[i], lower[i], upper[i]);

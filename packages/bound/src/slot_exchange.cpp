@@ -12,10 +12,10 @@
 namespace rpc::bound
 {
 
-SlotExchange::SlotExchange(const mesh::Mesh &mesh, const HostView<LO **> &node, const std::vector<int> &vertex_of)
+SlotExchange::SlotExchange(const mesh::Mesh &mesh, const HostView<LO **> &node, const std::vector<int> &node_of)
     : comm_(mesh.owned_nodes->getComm())
 {
-  const int ranks = comm_->getSize(), slots = static_cast<int>(vertex_of.size());
+  const int ranks = comm_->getSize(), slots = static_cast<int>(node_of.size());
   if (ranks == 1) return;
   constexpr int per_key = 4; // vertices of the facet, slot
   using Key = std::array<GO, per_key>;
@@ -26,14 +26,14 @@ SlotExchange::SlotExchange(const mesh::Mesh &mesh, const HostView<LO **> &node, 
   std::vector<GO> vertex;
   for (LO f = 0; f < facets; ++f) {
     Key key{};
-    for (std::size_t k = 0; k < node.extent(1); ++k) key[k] = mesh.node_gid(node(f, k));
+    for (std::size_t k = 0; k < std::min(node.extent(1), key.size() - 1); ++k) key[k] = mesh.node_gid(node(f, k));
     here[key] = f;
     for (int s = 0; s < slots; ++s) {
-      if (node(f, vertex_of[s]) < mesh.num_owned_nodes()) continue;
+      if (node(f, node_of[s]) < mesh.num_owned_nodes()) continue;
       key[per_key - 1] = s;
       wanted.push_back(key);
       place.push_back({f, s});
-      vertex.push_back(mesh.node_gid(node(f, vertex_of[s])));
+      vertex.push_back(mesh.node_gid(node(f, node_of[s])));
     }
   }
   std::vector<int> rank(vertex.size()), counts(ranks);
@@ -68,7 +68,7 @@ SlotExchange::SlotExchange(const mesh::Mesh &mesh, const HostView<LO **> &node, 
     served(k, 1) = static_cast<LO>(key[3]);
   }
   RPC_REQUIRE_CODE(max_all(*comm_, missing) == 0, ExitCode::internal_error,
-                   "bound: the rank of a vertex lacks a facet at it");
+                   "bound: the rank of a node lacks a facet at it");
   Kokkos::deep_copy(served_, served);
 }
 

@@ -10,15 +10,15 @@
 namespace rpc::bound
 {
 
-/// Rows of numbers that belong to slots of facets, such as their edges or ends. A slot belongs to the rank of one vertex of its facet, which has
+/// Rows of numbers that belong to slots of facets, such as their edges or ends. A slot belongs to the rank of one node of its facet, which has
 /// all cells around that; other ranks that have the facet get its numbers from there.
 class SlotExchange
 {
 public:
   /// Collective.
-  /// @param node  (facets, nodes of one) vertices, in an order that all ranks agree on
-  /// @param vertex_of  (slots) the vertex whose rank has the numbers
-  SlotExchange(const mesh::Mesh &mesh, const HostView<LO **> &node, const std::vector<int> &vertex_of);
+  /// @param node  (facets, nodes of one) vertices first, in an order that all ranks agree on
+  /// @param node_of  (slots) the node whose rank has the numbers
+  SlotExchange(const mesh::Mesh &mesh, const HostView<LO **> &node, const std::vector<int> &node_of);
 
   /// Where the numbers of slots are, for kernels.
   struct Rows {

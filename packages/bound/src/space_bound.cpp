@@ -15,14 +15,14 @@
 namespace rpc::bound
 {
 
-SpaceInput space_input(const fem::Discretization &d, const analysis::Model &model)
+SpaceInput space_input(const fem::Discretization &d, const analysis::Model &model, const SpaceFacets &facets)
 {
   SpaceInput in;
   in.coords = d.mesh->coords;
   in.block = d.mesh->block;
   in.lame = fem::lame_table(d, model.materials);
   for (int i = 0; i < 3; ++i) in.force[i] = value_everywhere(model.body_force[i]).value();
-  in.facets = space_facets_of(d);
+  in.facets = facets;
   in.cells = in.facets.nodes_of_cell;
   in.tables = facet_tables(d.mesh->element.order);
   in.reference.degree = d.mesh->element.order;
@@ -32,28 +32,29 @@ SpaceInput space_input(const fem::Discretization &d, const analysis::Model &mode
   return in;
 }
 
-std::string not_covered_in_space(const analysis::Problem &problem, const analysis::Step &step)
+std::string not_covered_in_space(const analysis::Problem &problem, const analysis::Step &step, FacetsOfMesh &facets)
 {
   const fem::Discretization &d = problem.discretization();
   const analysis::Model model = problem.model().seen_at(step.time);
   if (d.mesh->element.order != 1)
     return "in space it covers elements of order 1, and the cells are " + d.mesh->element.name() +
            "; \"Mesh->Element\" = P1 or Q1 is covered";
-  if (d.mesh->element.shape != mesh::Shape::simplex) return not_covered_of_hexahedra(problem, step);
-  boundary_of(d, model, step, space_input(d, model), {HostView<double *>("rpc::bound::none", step.contact.size()), {}});
+  if (d.mesh->element.shape != mesh::Shape::simplex) return not_covered_of_hexahedra(problem, step, facets);
+  facets = std::make_shared<SpaceFacets>(space_facets_of(d));
+  return_freed_memory();
+  boundary_of(d, model, step, space_input(d, model, *facets),
+              {HostView<double *>("rpc::bound::none", step.contact.size()), {}});
   return "";
 }
 
 EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::StepSolution &s,
-                           const solver::LinearSolverOptions &options, const int steps)
+                           const solver::LinearSolverOptions &options, const int steps, const SpaceFacets &facets)
 {
   const fem::Discretization &d = problem.discretization();
-  if (d.mesh->element.shape != mesh::Shape::simplex) return bound_of_hexahedra(problem, s, options, 2 * steps);
+  if (d.mesh->element.shape != mesh::Shape::simplex) return bound_of_hexahedra(problem, s, options, 2 * steps, facets);
   const Comm &comm = d.mesh->comm();
   const analysis::Model model = problem.model().seen_at(s.step.time);
-  return_freed_memory();
-  SpaceInput in = space_input(d, model);
-  return_freed_memory();
+  SpaceInput in = space_input(d, model, facets);
   in.reference = reference_stress(d.mesh->element);
   find_kinds(in, d.mesh->comm());
   const SpaceBoundary boundary = boundary_of(d, model, s.step, in, tractions_of(s.contact));
@@ -73,31 +74,20 @@ EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::Ste
   Solved galerkin = timed_galerkin_solution(problem, s, options, in, all, bound);
   if (!bound.missing.empty()) return bound;
 
-  const SpaceExchanges exchanges = space_exchanges(*d.mesh, in.facets);
-  const Tractions t =
-      equilibrated(in, all, galerkin.Q, mean_moments(in, *fem::on_overlap(d, *galerkin.u)), d.node_to_cells, exchanges);
-  galerkin = {}; // memory
   return_freed_memory();
-  const DeviceView<double *> of_cell("rpc::bound::of_cell", in.num_owned_cells);
   const RCP<const Vector> on_overlap = fem::on_overlap(d, *u);
   const SpaceForms forms = cell_forms(in, *on_overlap);
-  std::optional<RingSolves> rings(std::in_place, in, all, forms, exchanges);
-  std::optional<SpaceDescent> descent(std::in_place, in, forms, *rings, comm, t);
-  std::vector<double> falls;
-  for (int step = 0; step < steps; ++step) falls.push_back(descent->step());
-  descent.reset(); // memory
-  rings.reset();
-  const StressDifference left = stress_difference(in, comm, forms, t, *on_overlap, of_cell);
-  const double stress_norm = take_descent(comm, in, boundary.sides, contact, left, falls, lift, of_cell, bound);
+  const Descended after = descended(in, *d.mesh, d.node_to_cells, all, forms, galerkin.Q,
+                                    mean_moments(in, *fem::on_overlap(d, *galerkin.u)), steps);
+  const DeviceView<double *> of_cell("rpc::bound::of_cell", in.num_owned_cells);
+  const StressDifference left = stress_difference(in, comm, forms, after.t, *on_overlap, of_cell);
+  const double rho = take_descent(comm, in, boundary.sides, contact, left, after.falls, lift, of_cell, bound);
   if (!bound.missing.empty()) return bound;
-  const double rho = std::sqrt(stress_norm * stress_norm / 4 + contact.gap); // (13.13)
   const auto work_with = [&](const BoundaryTractions &tractions, const Vector &w) {
     return work_of(d, known_moments(in, tractions), in, w);
   };
-  add_forces(
-      problem, s, options, boundary.sides, rho, *u, [&](const Vector &w) { return work_with(boundary.tractions, w); },
-      [&](const Vector &w) { return work_with(all, w); },
-      [&](const Vector &x) { return fem::internal_work(d, model.materials, x).energy_norm_squared; }, bound);
+  const auto squared = [&](const Vector &x) { return fem::internal_work(d, model.materials, x).energy_norm_squared; };
+  add_forces(problem, s, options, boundary.sides, rho, *u, boundary.tractions, all, work_with, squared, bound);
   return bound;
 }
 

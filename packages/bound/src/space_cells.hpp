@@ -33,14 +33,13 @@ StressDifference stress_difference(const SpaceInput &in, const Comm &comm, const
 double norm_of_lifted_loads(const SpaceInput &in, const Comm &comm, const LiftedLoads &lifted,
                             const DeviceView<double ***> &load);
 DeviceView<double ***> nodal_forces(const SpaceInput &in, const fem::Discretization &d, const Vector &u);
-/// (facets, nodes of a facet, 3)
-DeviceView<double ***> mean_moments(const SpaceInput &in, const Vector &u);
+/// (facets * nodes of a facet * 3)
+Tractions mean_moments(const SpaceInput &in, const Vector &u);
 /// (facets, nodes of a facet, 3)
 DeviceView<double ***> known_moments(const SpaceInput &in, const BoundaryTractions &boundary);
-/// Collective.
+/// Collective. @param[in,out] Q, mean  are used up: the tractions have the memory of `mean`
 Tractions equilibrated(const SpaceInput &in, const BoundaryTractions &boundary, const DeviceView<double ***> &Q,
-                       const DeviceView<double ***> &mean, const fem::NodeToCells &around,
-                       const SpaceExchanges &exchanges);
+                       const Tractions &mean, const fem::NodeToCells &around, const SpaceExchanges &exchanges);
 double largest_distortion(const SpaceInput &in, const mesh::Element &element);
 
 /// Kinds of cells, for `kind` and `example`. Collective. @param comm  of the mesh

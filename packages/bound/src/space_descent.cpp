@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "space_descent.hpp"
 
+#include "rpc/core/memory.hpp"
+
 namespace rpc::bound
 {
 namespace
@@ -39,6 +41,20 @@ double SpaceDescent::step()
   go_along(length, d_, t_);
   rings_.add_shares(length, Ad, g_);
   return rho * length / 2;
+}
+
+Descended descended(const SpaceInput &in, const mesh::Mesh &mesh, const fem::NodeToCells &around,
+                    const BoundaryTractions &boundary, const SpaceForms &forms, DeviceView<double ***> &Q,
+                    const Tractions &mean, const int steps)
+{
+  const SpaceExchanges exchanges = space_exchanges(mesh, in.facets);
+  Descended found{equilibrated(in, boundary, Q, mean, around, exchanges), {}};
+  Q = {};
+  return_freed_memory();
+  const RingSolves rings(in, boundary, forms, exchanges);
+  SpaceDescent descent(in, forms, rings, mesh.comm(), found.t);
+  for (int step = 0; step < steps; ++step) found.falls.push_back(descent.step());
+  return found;
 }
 
 } // namespace rpc::bound

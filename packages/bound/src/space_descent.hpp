@@ -3,6 +3,8 @@
 
 #include "ring_solves.hpp"
 
+#include <vector>
+
 namespace rpc::bound
 {
 
@@ -26,5 +28,15 @@ private:
   DeviceView<float *> g_; // what rings need of the derivative
   double rho_ = 0;
 };
+
+/// Tractions in balance, from a Galerkin solution by steps of a descent.
+struct Descended {
+  Tractions t;
+  std::vector<double> falls; ///< of the energy [J]
+};
+/// Collective. @param mesh  of the tetrahedra, whose nodes have the cells `around`   @param[in,out] Q, mean  see equilibrated()
+Descended descended(const SpaceInput &in, const mesh::Mesh &mesh, const fem::NodeToCells &around,
+                    const BoundaryTractions &boundary, const SpaceForms &forms, DeviceView<double ***> &Q,
+                    const Tractions &mean, int steps);
 
 } // namespace rpc::bound

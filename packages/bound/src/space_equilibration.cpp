@@ -13,13 +13,20 @@ namespace
 struct BalanceStarsInSpace {
   SpaceInput in;
   BoundaryTractions boundary;
-  DeviceView<double ***> Q, mean, known;
+  DeviceView<double ***> Q; // inout: then what cells send out at their nodes
+  Tractions mean;           // (facets * nodes of one * 3)
+  DeviceView<double ***> known;
   fem::NodeToCells around;
-  DeviceView<std::size_t *> first; // (nodes + 1) where the matrix of a star begins
-  LO from;                         // the first node of a batch
-  DeviceView<double *> matrix;     // of a batch
-  DeviceView<double **> sent;      // (entries of node_to_cells, 3) out
-  DeviceView<double *> area;       // (facets) what is in one relation to it; a moment's square counts by one over that
+  DeviceView<std::size_t *>
+      first;                   // (nodes + 1) where the matrix of a star begins, and behind it what its cells send out
+  LO from;                     // the first node of a batch
+  DeviceView<double *> matrix; // of a batch
+  DeviceView<double *> area;   // (facets) what is in one relation to it; a moment's square counts by one over that
+
+  KOKKOS_FUNCTION std::size_t at(const LO f, const int a) const
+  {
+    return (static_cast<std::size_t>(f) * in.facets.node.extent(1) + a) * 3;
+  }
 
   KOKKOS_FUNCTION int node_of_cell(const LO c, const LO node) const
   {
@@ -102,10 +109,11 @@ struct BalanceStarsInSpace {
   }
   /// Some components, from one on, with one factor: no addition waits for another component's.
   template <int Count>
-  KOKKOS_FUNCTION void solve(const LO node, const int begin_with, const bool singular, const double *const L) const
+  KOKKOS_FUNCTION void solve(const LO node, const int begin_with, const bool singular, double *const L) const
   {
     const std::size_t begin = around.row(node);
     const int n = static_cast<int>(around.row(node + 1) - begin);
+    double *const sent = L + n * n; // (cells, Count)
     double rest[Count] = {};
     for (int k = 0; k < n; ++k) { // what lacks
       const LO c = around.cell(begin + k);
@@ -118,28 +126,33 @@ struct BalanceStarsInSpace {
         if (a < 0) continue;
         const double sign = in.facets.sign(c, s);
         for (int i = 0; i < Count; ++i)
-          r[i] -= sign * (is_known(f, begin_with + i) ? known(f, a, begin_with + i) : mean(f, a, begin_with + i));
+          r[i] -= sign * (is_known(f, begin_with + i) ? known(f, a, begin_with + i) : mean(at(f, a) + begin_with + i));
       }
       for (int i = 0; i < Count; ++i) {
-        sent(begin + k, begin_with + i) = r[i];
+        sent[k * Count + i] = r[i];
         rest[i] += r[i];
       }
     }
     for (int k = 0; singular && k < n; ++k) // what a solve has left of the balance of the star is shared by its cells
-      for (int i = 0; i < Count; ++i) sent(begin + k, begin_with + i) -= rest[i] / n;
+      for (int i = 0; i < Count; ++i) sent[k * Count + i] -= rest[i] / n;
     for (int j = 0; j < n; ++j) {
       double x[Count];
-      for (int i = 0; i < Count; ++i) x[i] = sent(begin + j, begin_with + i);
+      for (int i = 0; i < Count; ++i) x[i] = sent[j * Count + i];
       for (int k = 0; k < j; ++k)
-        for (int i = 0; i < Count; ++i) x[i] -= L[j * n + k] * sent(begin + k, begin_with + i);
-      for (int i = 0; i < Count; ++i) sent(begin + j, begin_with + i) = L[j * n + j] > 0 ? x[i] / L[j * n + j] : 0;
+        for (int i = 0; i < Count; ++i) x[i] -= L[j * n + k] * sent[k * Count + i];
+      for (int i = 0; i < Count; ++i) sent[j * Count + i] = L[j * n + j] > 0 ? x[i] / L[j * n + j] : 0;
     }
     for (int j = n - 1; j >= 0; --j) {
       double x[Count];
-      for (int i = 0; i < Count; ++i) x[i] = sent(begin + j, begin_with + i);
+      for (int i = 0; i < Count; ++i) x[i] = sent[j * Count + i];
       for (int k = j + 1; k < n; ++k)
-        for (int i = 0; i < Count; ++i) x[i] -= L[k * n + j] * sent(begin + k, begin_with + i);
-      for (int i = 0; i < Count; ++i) sent(begin + j, begin_with + i) = L[j * n + j] > 0 ? x[i] / L[j * n + j] : 0;
+        for (int i = 0; i < Count; ++i) x[i] -= L[k * n + j] * sent[k * Count + i];
+      for (int i = 0; i < Count; ++i) sent[j * Count + i] = L[j * n + j] > 0 ? x[i] / L[j * n + j] : 0;
+    }
+    for (int k = 0; k < n; ++k) {
+      const LO c = around.cell(begin + k);
+      const int own = node_of_cell(c, node);
+      for (int i = 0; i < Count; ++i) Q(c, own, begin_with + i) = sent[k * Count + i];
     }
   }
 
@@ -148,11 +161,13 @@ struct BalanceStarsInSpace {
   {
     const LO node = in.facets.node(f, a);
     double change[3] = {};
-    for (std::size_t k = around.row(node); k < around.row(node + 1); ++k)
-      for (int side = 0; side < 2; ++side)
-        if (around.cell(k) == in.facets.cell(f, side))
-          for (int i = 0; i < 3; ++i) change[i] += (side == 0 ? 1 : -1) * sent(k, i);
-    for (int i = 0; i < 3; ++i) m[i] = is_known(f, i) ? known(f, a, i) : mean(f, a, i) + area(f) * change[i];
+    for (int side = 0; side < 2; ++side) {
+      const LO c = in.facets.cell(f, side);
+      if (c < 0) continue;
+      const int own = node_of_cell(c, node);
+      for (int i = 0; i < 3; ++i) change[i] += (side == 0 ? 1 : -1) * Q(c, own, i);
+    }
+    for (int i = 0; i < 3; ++i) m[i] = is_known(f, i) ? known(f, a, i) : mean(at(f, a) + i) + area(f) * change[i];
   }
 };
 
@@ -196,8 +211,7 @@ DeviceView<double ***> known_moments(const SpaceInput &in, const BoundaryTractio
 }
 
 Tractions equilibrated(const SpaceInput &in, const BoundaryTractions &boundary, const DeviceView<double ***> &Q,
-                       const DeviceView<double ***> &mean, const fem::NodeToCells &around,
-                       const SpaceExchanges &exchanges)
+                       const Tractions &mean, const fem::NodeToCells &around, const SpaceExchanges &exchanges)
 {
   const LO nodes = static_cast<LO>(around.row.extent(0)) - 1;
   const int functions = static_cast<int>(in.facets.node.extent(1));
@@ -208,7 +222,7 @@ Tractions equilibrated(const SpaceInput &in, const BoundaryTractions &boundary, 
       KOKKOS_LAMBDA(const LO node, std::size_t &before, const bool last) {
         if (last) first(node) = before;
         const std::size_t n = around.row(node + 1) - around.row(node);
-        before += n * n;
+        before += n * n + 3 * n;
       },
       total);
   const auto begins = to_host(first);
@@ -227,40 +241,42 @@ Tractions equilibrated(const SpaceInput &in, const BoundaryTractions &boundary, 
       first,
       0,
       DeviceView<double *>(Kokkos::view_alloc("rpc::bound::matrix", Kokkos::WithoutInitializing), most),
-      DeviceView<double **>("rpc::bound::sent", around.cell.extent(0), 3),
       areas_of(in)};
   for (; stars.from < nodes; stars.from += batch)
     Kokkos::parallel_for("rpc::bound::balance_stars", device_range(end_of(stars.from) - stars.from), stars);
-  // Moments of functions at other ranks' vertices are fetched, and so are tractions of other ranks' facets.
-  const auto of_vertices = exchanges.of_vertices.served(), of_facets = exchanges.of_facets.served();
-  const DeviceView<double **> served("rpc::bound::served_moments", of_vertices.extent(0), 3);
+  // Moments of functions at other ranks' nodes are fetched, and so are tractions of other ranks' facets.
+  const auto at_nodes = exchanges.of_nodes.served(), of_facets = exchanges.of_facets.served();
+  const DeviceView<double **> served("rpc::bound::served_moments", at_nodes.extent(0), 3);
   Kokkos::parallel_for(
-      "rpc::bound::serve_moments", device_range(static_cast<LO>(of_vertices.extent(0))), KOKKOS_LAMBDA(const LO k) {
+      "rpc::bound::serve_moments", device_range(static_cast<LO>(at_nodes.extent(0))), KOKKOS_LAMBDA(const LO k) {
         double m[3];
-        stars.moments(of_vertices(k, 0), of_vertices(k, 1), m);
+        stars.moments(at_nodes(k, 0), at_nodes(k, 1), m);
         for (int i = 0; i < 3; ++i) served(k, i) = m[i];
       });
-  const DeviceView<double **> fetched = exchanges.of_vertices.fetched(served);
+  const DeviceView<double **> fetched = exchanges.of_nodes.fetched(served);
   const int per_facet = 3 * functions;
-  const Tractions t("rpc::bound::tractions", static_cast<std::size_t>(in.facets.size()) * per_facet);
+  const Tractions t = mean; // of a facet by its own moments
   const auto from = in.tables.from_moments;
   const auto load = boundary.load;
   const SpaceFacets facets = in.facets;
-  const SlotExchange::Rows row = exchanges.of_vertices.rows(), row_of_facet = exchanges.of_facets.rows();
+  const SlotExchange::Rows row = exchanges.of_nodes.rows(), row_of_facet = exchanges.of_facets.rows();
   Kokkos::parallel_for(
       "rpc::bound::tractions_from_moments", device_range(in.facets.size()), KOKKOS_LAMBDA(const LO f) {
-        if (!facets.counts(f)) return;
+        if (!facets.counts(f)) return; // taken below
         const std::size_t at = static_cast<std::size_t>(f) * per_facet;
+        double moment[SpaceSizes<2>::functions][3];
         for (int a = 0; a < functions; ++a) {
-          const LO there = a < 3 ? row(f, a) : -1;
-          double m[3];
+          const LO there = row(f, a);
           if (there < 0)
-            stars.moments(f, a, m);
+            stars.moments(f, a, moment[a]);
           else
-            for (int i = 0; i < 3; ++i) m[i] = fetched(there, i);
-          for (int j = 0; j < functions; ++j)
-            for (int i = 0; i < 3; ++i) t(at + 3 * j + i) += from(j, a) * m[i];
+            for (int i = 0; i < 3; ++i) moment[a][i] = fetched(there, i);
         }
+        for (int j = 0; j < functions; ++j)
+          for (int i = 0; i < 3; ++i) {
+            t(at + 3 * j + i) = 0;
+            for (int a = 0; a < functions; ++a) t(at + 3 * j + i) += from(j, a) * moment[a][i];
+          }
         for (int i = 0; i < 3; ++i)
           for (int j = 0; stars.is_known(f, i) && j < functions; ++j) t(at + 3 * j + i) = load(f, j, i);
       });

@@ -3,6 +3,9 @@
 
 #include "slot_exchange.hpp"
 
+#include <numeric>
+#include <vector>
+
 namespace rpc::bound
 {
 
@@ -57,14 +60,20 @@ SpaceFacets space_facets_of(const fem::Discretization &d);
 /// (local nodes) Numbers that do not depend on the ranks, Mesh::node_id. Collective.
 std::vector<GO> ids_of_nodes(const fem::Discretization &d);
 
-/// Numbers of facets, of their vertices 0, 1, 2 and of their edges 01, 12, 02, between ranks.
+/// Numbers of facets, of their nodes and of their edges 01, 12, 02, between ranks.
 struct SpaceExchanges {
-  SlotExchange of_facets, of_vertices, of_edges;
+  SlotExchange of_facets, of_nodes, of_edges;
 
   /// Collective. @param node  (facets, nodes of one) SpaceFacets::node
   SpaceExchanges(const mesh::Mesh &mesh, const HostView<LO **> &node)
-      : of_facets(mesh, node, {0}), of_vertices(mesh, node, {0, 1, 2}), of_edges(mesh, node, {0, 1, 0})
+      : of_facets(mesh, node, {0}), of_nodes(mesh, node, all_of(node.extent(1))), of_edges(mesh, node, {0, 1, 0})
   {
+  }
+  static std::vector<int> all_of(const std::size_t n)
+  {
+    std::vector<int> all(n);
+    std::iota(all.begin(), all.end(), 0);
+    return all;
   }
 };
 SpaceExchanges space_exchanges(const mesh::Mesh &mesh, const SpaceFacets &facets);

@@ -7,33 +7,26 @@
 #include "space_facets.hpp"
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace rpc::bound
 {
 
-/// The host's copy of the facets of a mesh's sides.
+/// The host's view of the facets of a mesh's sides.
 struct SpaceFacetsOnHost {
+  template <class View>
+  using Host = decltype(to_host(std::declval<const View &>()));
   const mesh::Mesh &mesh;
-  HostView<LO **> nodes_of_cell, of_cell, cell, node;
-  HostView<double **> coords;
+  Host<DeviceView<LO **>> nodes_of_cell, node;
+  Host<DeviceView<LO *[4]>> of_cell;
+  Host<DeviceView<LO *[2]>> cell;
+  Host<decltype(mesh::Mesh::coords)> coords;
 
   SpaceFacetsOnHost(const mesh::Mesh &m, const SpaceFacets &f)
-      : mesh(m), nodes_of_cell(copied(f.nodes_of_cell)), of_cell(copied(f.of_cell)), cell(copied(f.cell)),
-        node(copied(f.node)), coords("", m.coords.extent(0), 3)
+      : mesh(m), nodes_of_cell(to_host(f.nodes_of_cell)), node(to_host(f.node)), of_cell(to_host(f.of_cell)),
+        cell(to_host(f.cell)), coords(to_host(m.coords))
   {
-    const auto x = to_host(m.coords);
-    for (std::size_t i = 0; i < x.extent(0); ++i)
-      for (int d = 0; d < 3; ++d) coords(i, d) = x(i, d);
-  }
-  template <class View>
-  static HostView<LO **> copied(const View &view)
-  {
-    const auto from = to_host(view);
-    HostView<LO **> to("", from.extent(0), from.extent(1));
-    for (std::size_t i = 0; i < from.extent(0); ++i)
-      for (std::size_t j = 0; j < from.extent(1); ++j) to(i, j) = from(i, j);
-    return to;
   }
   /// Numbers of the facets of a side. Collective.
   std::vector<LO> facets_of(const mesh::Side &side) const

@@ -49,12 +49,13 @@ struct NodalForces {
 struct MeanMoments {
   SpaceInput in;
   ReadDisplacement u;
-  DeviceView<double ***> mean;
+  Tractions mean;
 
   KOKKOS_FUNCTION void operator()(const LO f) const
   {
     if (!in.facets.is_whole(f)) return;
     const int both = in.facets.on_boundary(f) ? 1 : 2, nodes = static_cast<int>(in.facets.node.extent(1));
+    double *const own = mean.data() + static_cast<std::size_t>(f) * nodes * 3;
     double e[2][3], n[3];
     for (int k = 0; k < 2; ++k)
       for (int i = 0; i < 3; ++i) e[k][i] = in.coords(in.facets.node(f, k + 1), i) - in.coords(in.facets.node(f, 0), i);
@@ -77,7 +78,7 @@ struct MeanMoments {
         stress_of_gradient(in.lame(in.block(c), 0), in.lame(in.block(c), 1), D, sigma);
         for (int i = 0; i < 3; ++i) {
           const double t = sigma[i][0] * n[0] + sigma[i][1] * n[1] + sigma[i][2] * n[2];
-          for (int a = 0; a < nodes; ++a) mean(f, a, i) += in.tables.moment(0, a) / both * (toward > 0 ? 1 : -1) * t;
+          for (int a = 0; a < nodes; ++a) own[3 * a + i] += in.tables.moment(0, a) / both * (toward > 0 ? 1 : -1) * t;
         }
         continue;
       }
@@ -88,7 +89,8 @@ struct MeanMoments {
         const double w = in.reference.side_weight(q) / both * (toward > 0 ? 1 : -1);
         for (int a = 0; a < nodes; ++a)
           for (int i = 0; i < 3; ++i)
-            mean(f, a, i) += w * in.tables.shape(q, a) * (sigma[i][0] * n[0] + sigma[i][1] * n[1] + sigma[i][2] * n[2]);
+            own[3 * a + i] +=
+                w * in.tables.shape(q, a) * (sigma[i][0] * n[0] + sigma[i][1] * n[1] + sigma[i][2] * n[2]);
       }
     }
   }
@@ -231,9 +233,9 @@ DeviceView<double ***> nodal_forces(const SpaceInput &in, const fem::Discretizat
   return Q;
 }
 
-DeviceView<double ***> mean_moments(const SpaceInput &in, const Vector &u)
+Tractions mean_moments(const SpaceInput &in, const Vector &u)
 {
-  DeviceView<double ***> mean("rpc::bound::mean_moments", in.facets.size(), in.facets.node.extent(1), 3);
+  Tractions mean("rpc::bound::mean_moments", 3 * in.facets.size() * in.facets.node.extent(1));
   Kokkos::parallel_for("rpc::bound::mean_moments", device_range(in.facets.size()),
                        MeanMoments{in, device_read(u), mean});
   Kokkos::fence();

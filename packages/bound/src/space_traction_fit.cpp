@@ -63,6 +63,12 @@ public:
 
 private:
   using Values = std::array<std::vector<double>, 2>; // (components; corners)
+  /// Of one level: (points) the first of four hats, and what they are there; 0 where nothing can act.
+  struct Hats {
+    int intervals;
+    std::vector<std::size_t> first;
+    std::vector<std::array<double, 4>> weight;
+  };
 
   bool hardens() const { return w_.rise > 0; }
   void apply_or_compare(const std::vector<double> &x, const bool compare, std::vector<double> &y) const
@@ -155,54 +161,53 @@ private:
   /// Squares of intervals of hats on all levels, from about four nodes for each down to one for all.
   void list_hats()
   {
-    std::array<double, 2> high{};
+    std::array<double, 2> low{}, high{};
     int count = 0;
     for (int d = 0; d < 2; ++d) {
-      low_[d] = std::numeric_limits<double>::infinity();
-      high[d] = -low_[d];
+      low[d] = std::numeric_limits<double>::infinity();
+      high[d] = -low[d];
     }
     for (std::size_t i = 0; i < c_.place.size(); ++i) {
       if (!w_.free[i]) continue;
       ++count;
       for (int d = 0; d < 2; ++d) {
-        low_[d] = std::min(low_[d], c_.place[i][d]);
+        low[d] = std::min(low[d], c_.place[i][d]);
         high[d] = std::max(high[d], c_.place[i][d]);
       }
     }
-    for (int d = 0; d < 2; ++d) span_[d] = high[d] - low_[d];
-    if (!(span_[0] > 0 && span_[1] > 0)) return;
-    for (int n = static_cast<int>(std::sqrt(count)) / 2; n >= 1; n /= 2) intervals_.push_back(n);
+    std::array<double, 2> span{};
+    for (int d = 0; d < 2; ++d) span[d] = high[d] - low[d];
+    if (!(span[0] > 0 && span[1] > 0)) return;
+    for (int n = static_cast<int>(std::sqrt(count)) / 2; n >= 1; n /= 2) {
+      Hats level{n, std::vector<std::size_t>(c_.place.size()), std::vector<std::array<double, 4>>(c_.place.size())};
+      for (std::size_t i = 0; i < c_.place.size(); ++i) {
+        if (!w_.free[i]) continue;
+        int k[2];
+        double x[2];
+        for (int d = 0; d < 2; ++d) {
+          x[d] = n * (c_.place[i][d] - low[d]) / span[d];
+          k[d] = std::clamp(static_cast<int>(x[d]), 0, n - 1);
+          x[d] -= k[d];
+        }
+        level.first[i] = static_cast<std::size_t>(k[0]) * (n + 1) + k[1];
+        level.weight[i] = {(1 - x[0]) * (1 - x[1]), (1 - x[0]) * x[1], x[0] * (1 - x[1]), x[0] * x[1]};
+      }
+      levels_.push_back(level);
+    }
   }
   /// force <- S force, with S the sum over all levels of the products with hats, and the nodes themselves.
   void add_weighted(std::vector<double> &force) const
   {
     constexpr double of_all = 100; // of the force and moments of the whole side, squared
     std::vector<double> sum(force), hat;
-    for (const int n : intervals_) {
-      hat.assign(static_cast<std::size_t>(n + 1) * (n + 1), 0.);
-      const auto at = [&](const std::size_t i, std::array<double, 4> &weight) { // of four hats from the first one on
-        int k[2];
-        double x[2];
-        for (int d = 0; d < 2; ++d) {
-          x[d] = n * (c_.place[i][d] - low_[d]) / span_[d];
-          k[d] = std::clamp(static_cast<int>(x[d]), 0, n - 1);
-          x[d] -= k[d];
-        }
-        weight = {(1 - x[0]) * (1 - x[1]), (1 - x[0]) * x[1], x[0] * (1 - x[1]), x[0] * x[1]};
-        return static_cast<std::size_t>(k[0]) * (n + 1) + k[1];
-      };
-      const std::size_t step[4] = {0, 1, static_cast<std::size_t>(n) + 1, static_cast<std::size_t>(n) + 2};
-      std::array<double, 4> weight{};
-      for (std::size_t i = 0; i < force.size(); ++i) {
-        if (!w_.free[i]) continue;
-        const std::size_t first = at(i, weight);
-        for (int k = 0; k < 4; ++k) hat[first + step[k]] += weight[k] * force[i];
-      }
-      for (std::size_t i = 0; i < force.size(); ++i) {
-        if (!w_.free[i]) continue;
-        const std::size_t first = at(i, weight);
-        for (int k = 0; k < 4; ++k) sum[i] += (n == 1 ? of_all : 1) * weight[k] * hat[first + step[k]];
-      }
+    for (const Hats &level : levels_) {
+      const std::size_t n = level.intervals + 1, step[4] = {0, 1, n, n + 1};
+      hat.assign(n * n, 0.);
+      for (std::size_t i = 0; i < force.size(); ++i)
+        for (int k = 0; k < 4; ++k) hat[level.first[i] + step[k]] += level.weight[i][k] * force[i];
+      for (double &of_hat : hat) of_hat *= level.intervals == 1 ? of_all : 1;
+      for (std::size_t i = 0; i < force.size(); ++i)
+        for (int k = 0; k < 4; ++k) sum[i] += level.weight[i][k] * hat[level.first[i] + step[k]];
     }
     force = sum;
   }
@@ -220,8 +225,7 @@ private:
   const WantedInSpace &w_;
   std::size_t corners_; // of facets
   double size_ = 0;     // of facets [m]
-  std::array<double, 2> low_{}, span_{};
-  std::vector<int> intervals_;
+  std::vector<Hats> levels_;
   std::vector<double> f_, scale_, start_, low_bound_, high_bound_;
 };
 

@@ -351,7 +351,7 @@ TEST(Hexahedra, HaveMeanMomentsOfBothSidesAlongTheNormalOfTheFirst)
     }
     for (int a = 0; a < 3; ++a)
       for (int i = 0; i < 3; ++i) {
-        EXPECT_NEAR(mean(f, a, i), (moment[0][a][i] + moment[1][a][i]) / both, 1e-12);
+        EXPECT_NEAR(mean((f * 3 + a) * 3 + i), (moment[0][a][i] + moment[1][a][i]) / both, 1e-12);
         if (both == 2) jump = std::max(jump, std::abs(moment[0][a][i] - moment[1][a][i]));
       }
   }

@@ -3,6 +3,7 @@
 
 #include "rpc/analysis/run.hpp"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -39,13 +40,16 @@ const char *name_of(EnergyBound::Of of);
 /// Whether the bound is known for a task; needs no mesh.
 /// @throws rpc::Error (bad_input) naming what is covered, if not
 void require_covered(const analysis::Task &task);
-/// The same of a step on its mesh; collective.
+/// The facets of the mesh that bounds in space go by; in the plane null.
+struct SpaceFacets;
+using FacetsOfMesh = std::shared_ptr<const SpaceFacets>;
+/// The same of a step on its mesh; collective. @return for energy_bound()
 /// @throws rpc::Error (bad_input)
-void require_covered(const analysis::Problem &problem, const analysis::Step &step);
+FacetsOfMesh require_covered(const analysis::Problem &problem, const analysis::Step &step);
 
-/// Collective. @param solution  of a step that require_covered() admits
+/// Collective. @param solution  of a step that require_covered() admits   @param facets  that it has found; null: they are to be found
 /// @param steps  of conjugate gradients, see bound_rules; in space twice as many, of hexahedra four times
 EnergyBound energy_bound(const analysis::Problem &problem, const analysis::StepSolution &solution,
-                         const solver::LinearSolverOptions &options, int steps);
+                         const solver::LinearSolverOptions &options, int steps, const FacetsOfMesh &facets);
 
 } // namespace rpc::bound
