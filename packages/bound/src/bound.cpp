@@ -74,9 +74,6 @@ double product_over_ranks(const CellInput &in, const Comm &comm, const Tractions
 
 void require_covered(const analysis::Task &task)
 {
-  require_of_deck(
-      !on_gpu,
-      "its kernels have not been run on a GPU since one of them did not end there; a program without CUDA has it");
   require_of_deck(task.model.kinematics != fem::Kinematics::axisymmetric, "the body is axisymmetric");
   for (const auto &condition : task.model.dirichlet)
     require_of_deck(!condition.is_moved() && !condition.rigid,
