@@ -148,6 +148,9 @@ void add_bars_of_entries(std::vector<Result> &all, const Scene &scene, const Sol
                        : key == "rigid_moment"          ? of_rigid_side(result, motions.moments)
                        : key == "obstacle_spring_force" ? motions.obstacle * stiffest_spring(scene)
                                                         : motions.obstacle;
+    if (!std::isinf(result.error_bar)) continue;
+    result.error_bar = std::numeric_limits<double>::quiet_NaN();
+    result.no_bar = "how soft the body is against its load is not known: the last step took no linear solve";
   }
 }
 

@@ -73,6 +73,26 @@ TEST(TiedSides, TheGradientIsTheDerivativeAndTheSolverInvertsTheTangent)
   }
 }
 
+TEST(TiedSides, HowSoftTheBodyIsIsNotToldBeforeASolveHasShownIt)
+{
+  for (const Pressed &pressed : bodies()) {
+    analysis::SolverState first(*pressed.problem), second(*pressed.problem);
+    const auto step = pressed.problem->step(1);
+    const auto found = analysis::solve_step(*pressed.problem, step, first, {});
+    ASSERT_TRUE(found.uzawa.converged) << found.uzawa.reason;
+    EXPECT_GT(found.softness.displacement[0], 0);
+    EXPECT_TRUE(std::isfinite(found.softness.displacement[0]));
+    const auto again = analysis::solve_step(*pressed.problem, step, second, {}, {{found.state}, {}});
+    ASSERT_TRUE(again.uzawa.converged) << again.uzawa.reason;
+    EXPECT_EQ(std::isinf(again.softness.displacement[0]), again.linear.iterations.empty());
+    if (!again.linear.iterations.empty()) {
+      EXPECT_NEAR(again.softness.displacement[0] / found.softness.displacement[0], 1, 1e-6);
+    }
+    analysis::SolverState untouched(*pressed.problem);
+    EXPECT_TRUE(untouched.linear().softness_of_tied().empty());
+  }
+}
+
 TEST(TiedSides, AForceThatIsTheReactionLeadsToTheDisplacementThatItCameFrom)
 {
   for (Pressed pressed : bodies()) {

@@ -143,6 +143,7 @@ LinearSolver::Result TiedSolver::solve(const Held &held, const Vector &b, Vector
     }
     if (enough) break;
   }
+  solved_ = true;
   for (int j = 0; j < n; ++j) x.update(-value[j], *response_[j], 1.);
   set_members(tied, value, x);
   if (H_->is_symmetric()) balance(b, x);
@@ -196,6 +197,7 @@ double TiedSolver::inverse_energy(const std::function<double(const Vector &)> &h
 
 std::vector<double> TiedSolver::softness() const
 {
+  if (!solved_) return {};
   const int n = stiffness_->tied().size();
   const std::vector<double> S = complement();
   std::vector<double> all;

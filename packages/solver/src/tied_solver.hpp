@@ -27,7 +27,7 @@ public:
   LinearSolver::Result solve(const Held &held, const Vector &b, Vector &x, const Accuracy &wanted);
   /// About F . A^-1 F.
   double inverse_energy(const std::function<double(const Vector &)> &held, const Vector &F) const;
-  /// (groups, groups) (D - C^T Y)^-1, column after column; empty where it is singular.
+  /// (groups, groups) (D - C^T Y)^-1, column after column; empty where it is singular, and before a solve, which finds Y.
   std::vector<double> softness() const;
 
 private:
@@ -39,6 +39,7 @@ private:
   RCP<const TiedStiffness> stiffness_;
   RCP<const UpdatedOperator> H_;
   std::vector<RCP<Vector>> response_; // Y
+  bool solved_ = false;
 };
 
 } // namespace rpc::solver

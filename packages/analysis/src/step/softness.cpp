@@ -2,6 +2,7 @@
 #include "step/softness.hpp"
 
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -16,11 +17,11 @@ class Rows
 public:
   /// @param columns  (groups, groups)   @param n  groups
   Rows(std::vector<double> columns, const int n) : columns_(std::move(columns)), n_(n) {}
-  bool empty() const { return columns_.empty(); }
 
-  /// @param factors  (groups from the first one on) of the rows
+  /// @param factors  (groups from the first one on) of the rows   @return infinite where there are no columns: the softness is not known
   double squared(const int first, const std::vector<double> &factors) const
   {
+    if (columns_.empty()) return std::numeric_limits<double>::infinity();
     double sum = 0;
     for (int k = 0; k < n_; ++k) {
       double entry = 0;
@@ -45,7 +46,7 @@ Softness softness_of(const Problem &problem, const fem::DirichletDofs &dirichlet
   softness.rotation.assign(dirichlet.rigid.size(), 0.);
   const int groups = dirichlet.tied ? dirichlet.tied->size() : 0;
   const Rows rows(state.linear().softness_of_tied(), groups);
-  if (groups == 0 || rows.empty()) return softness;
+  if (groups == 0) return softness;
   int group = 0;
   for (const auto &[k, c] : fem::moved_by_force(conditions)) softness.displacement[k] += rows.squared(group++, {1});
   for (std::size_t j = 0; j < fem::floating_components(conditions).size(); ++j)

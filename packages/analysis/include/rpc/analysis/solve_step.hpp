@@ -90,7 +90,8 @@ struct Starts {
 };
 
 /// By how much forces of 1 N along unknown motions, or moments that 1 N has at the root mean square of a rigid side's arms, move what forces
-/// move, with the contact states as they are: 2-norms over these forces. 0 where it is not known.                  (4.17)
+/// move, with the contact states as they are: 2-norms over these forces. Infinite where no solve has shown it, or
+/// nothing holds what forces move.                                                                                 (4.17)
 struct Softness {
   std::vector<double> displacement; ///< of each Dirichlet condition [m/N], in 2D per m
   std::vector<double> rotation;     ///< of each rigid side [rad/N], in 2D per m

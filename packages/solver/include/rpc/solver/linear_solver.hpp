@@ -81,7 +81,7 @@ public:
   /// down; collective.
   double inverse_energy(const Vector &F);
   /// (groups, groups) By how much forces move the tied unknowns, each with all others as they like, with H of the last solve; empty where there
-  /// are none, or nothing holds them. Collective.                                                                    (4.17)
+  /// are none, nothing holds them, or there was no solve. Collective.                                                                    (4.17)
   std::vector<double> softness_of_tied() const;
 
   const LinearSolverCounts &counts() const;
