@@ -105,6 +105,43 @@ TEST(LoadHistory, AStepThatDoesNotConvergeIsHalvedAsOftenAsAllowed)
   EXPECT_NEAR(halved.last().contact.force[1], patient.last().contact.force[1], 1e-6 * patient.last().contact.force[1]);
 }
 
+TEST(LoadHistory, ADividedStepHasTheSlipAndTheWorkOfFrictionOfAllItsParts)
+{
+  analysis::Model model = stroke();
+  model.contact[0].friction_coefficient = ScalarField(0.3);
+  analysis::StepsOptions steps;
+  steps.energy_tolerance = 0.02;
+  auto divided = history_of(model, close(), 0, 1, 2);
+  divided.balance_energies(steps);
+  std::vector<double> times; // of the parts before the last one
+  analysis::Progress progress;
+  progress.part = [&](const Problem &, const StepSolution &part) {
+    if (!times.empty() && part.step.time <= times.back()) times.clear(); // as if it had not been tried
+    times.push_back(part.step.time);
+  };
+  const StepSolution s = divided.advance(1, progress);
+  ASSERT_TRUE(s.uzawa.converged) << s.uzawa.reason;
+  ASSERT_FALSE(times.empty());
+
+  times.push_back(1);
+  auto single = history_of(model, close(), 0, 1, 2);
+  double work = 0, largest = 0, slips = 0;
+  for (const double t : times) {
+    advance(single, t);
+    const auto &part = single.last().contact;
+    work += part.friction_work;
+    largest = std::max(largest, part.max_slip);
+    slips += part.max_slip;
+  }
+  const auto &whole = divided.last().contact;
+  EXPECT_GT(work, 1.05 * single.last().contact.friction_work);
+  EXPECT_NEAR(whole.friction_work / work, 1, 1e-6);
+  EXPECT_GT(whole.max_slip, 1.05 * largest);
+  EXPECT_LE(whole.max_slip, slips * (1 + 1e-6));
+  EXPECT_EQ(whole.friction_work, s.contact.total.friction_work);
+  EXPECT_EQ(whole.max_slip, s.contact.sides[0].max_slip);
+}
+
 TEST(LoadHistory, AStepThatFailsIsNotRemembered)
 {
   const int needed = iterations_needed();

@@ -56,6 +56,16 @@ void add_work(const StepSolution &s, StepRecord &record)
   record.from_rest = record.from_rest || s.from_rest;
 }
 
+/// Where a step to time t was divided in vain, and had come nearer to a solution as a whole than its part that failed, the reasons of both: the
+/// remedy of the former may be the better one.
+void tell_what_came_nearer(const UzawaResult &undivided, const double t, UzawaResult &part)
+{
+  if (!(undivided.residuals.worst() < part.residuals.worst()) || undivided.reason == part.reason) return;
+  std::ostringstream reason;
+  reason << part.reason << "; undivided, the step to t = " << t << " ended nearer to a solution: " << undivided.reason;
+  part.reason = reason.str();
+}
+
 } // namespace
 
 double relative_imbalance(const Energies &before, const Energies &after)
@@ -123,6 +133,7 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   const double start = Teuchos::Time::wallTime();
   last_ = {};
   last_.time = t;
+  kept_.whole_step = {};
   const Remembered before = kept_;
   const Energies energies_before = kept_.memory ? kept_.memory->energies : Energies{};
   StepSolution s;
@@ -141,8 +152,8 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   last_.time = s.uzawa.converged ? t : tried_;
   last_.converged = s.uzawa.converged;
   if (last_.converged) {
+    if (last_.parts > 1) kept_.whole_step.take(problem_->discretization().mesh->comm(), s.step.contact, s.contact);
     last_.contact = s.contact.total;
-    last_.side_forces.clear();
     for (const auto &side : s.contact.sides) last_.side_forces.push_back(side.force);
     last_.patches = contact::counted(contact::contact_patches(*problem_->discretization().mesh,
                                                               problem_->contact_sides(), s.step.contact, s.contact));
@@ -178,21 +189,6 @@ StepRecord LoadHistory::broken_off(const std::string &reason) const
 {
   return analysis::broken_off(problem_->model(), last_, tried_, reason);
 }
-
-namespace
-{
-
-/// Where a step to time t was divided in vain, and had come nearer to a solution as a whole than its part that failed, the reasons of both: the
-/// remedy of the former may be the better one.
-void tell_what_came_nearer(const UzawaResult &undivided, const double t, UzawaResult &part)
-{
-  if (!(undivided.residuals.worst() < part.residuals.worst()) || undivided.reason == part.reason) return;
-  std::ostringstream reason;
-  reason << part.reason << "; undivided, the step to t = " << t << " ended nearer to a solution: " << undivided.reason;
-  part.reason = reason.str();
-}
-
-} // namespace
 
 StepSolution LoadHistory::advance_in_parts(const double t, const Halvings &left, const Progress &progress,
                                            const std::function<void(const Problem &, const Step &)> &now)
@@ -443,6 +439,7 @@ void LoadHistory::remember(const double t, const std::vector<contact::ContactOpt
       std::max({step.energies_before, now.energies.strain, rounding / (tolerance * tolerance)}); // (5.5b)
   if (max_all(problem_->discretization().mesh->comm(), static_cast<int>(s.state.multiplier.has_tangential())) > 0)
     now.tangential = contact::node_columns(step.contact, s.state.multiplier.tangential, owned_nodes);
+  kept_.whole_step.add(step.contact, s.contact, owned_nodes);
   kept_.before = std::exchange(kept_.memory, std::move(now));
   kept_.last_forces = forces;
 }

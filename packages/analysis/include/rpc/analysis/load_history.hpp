@@ -6,6 +6,7 @@
 #include "rpc/analysis/rules.hpp"
 #include "rpc/analysis/solve_step.hpp"
 #include "rpc/contact/contact_patches.hpp"
+#include "rpc/contact/whole_step.hpp"
 #include "rpc/core/headway.hpp"
 #include "rpc/core/rules.hpp"
 #include "rpc/fem/peaks.hpp"
@@ -136,6 +137,7 @@ private:
     std::optional<Memory> memory, before; // of the last step, and of the one before it
     RCP<const Vector>
         last_forces; // on the body from all but the foundation, after the last step (owned dofs) [N]; null: not known
+    contact::WholeStep whole_step; // of the parts that the step in work has so far
   };
   StepSolution advance_in_parts(double t, const Halvings &left, const Progress &progress,
                                 const std::function<void(const Problem &, const Step &)> &now);
