@@ -6,8 +6,8 @@
 namespace rpc::adapt
 {
 
-/// How deep the foundation may give way, and how large the pressure may be where it yields and hardens: at nodes that bear one, with what the highest
-/// order of the facets adds along their edges.                                                    doc/theory.md (10.8c)
+/// How deep the foundation may give way, and how large the pressure may be where it yields and hardens: with what the highest order of the
+/// facets adds along edges whose nodes all bear one.                                                    doc/theory.md (10.8c)
 struct HighestOrder {
   ContactTerms terms; // in
   int num_vertices;   // of a facet, in
@@ -35,9 +35,12 @@ struct HighestOrder {
       const int b = (a + 1) % num_vertices, m = quadratic ? num_vertices + a : -1;
       const double deeper = added(f, a, b, m, int(pressed)), more = added(f, a, b, m, int(pressure));
       const int nodes[3] = {m, a, b};
+      bool bears = true; // past a jump of the gap depths tell nothing: (3.16a)
+      for (int k = quadratic ? 0 : 1; k < 3; ++k) bears = bears && at(f, nodes[k], pressure) > 0;
+      if (!bears) continue;
       for (int k = quadratic ? 0 : 1; k < (middles_alone ? 1 : 3); ++k) {
         const double p = at(f, nodes[k], pressure), w = at(f, nodes[k], pressed);
-        if (!(p > 0 && w > 0)) continue;
+        if (!(w > 0)) continue;
         depth = math::fmax(depth, w + deeper);
         const contact::Foundation law = terms.law_at(f, nodes[k]);
         if (contact::hardens(law) && p >= contact::yield_limit(law)) most = math::fmax(most, p + more);
