@@ -71,8 +71,8 @@ struct SideSamples {
   const std::vector<FacetShape> &lattice;
   bool axisymmetric;
 
-  /// @param modulus  lambda + 2 mu of the cell [Pa]   @param least  what is no more than rounding [m]
-  Found look(const LO f, const double modulus, const double least) const
+  /// @param modulus  lambda + 2 mu of the cell [Pa]   @param least  what is no more than rounding [m]   @param at  the samples, if they are known
+  Found look(const LO f, const double modulus, const double least, const SampledFacet *const at = nullptr) const
   {
     Found found;
     const double most_allowed = rows.most_allowed(f);
@@ -87,8 +87,8 @@ struct SideSamples {
         radii += axisymmetric ? place_at(rows, f, shape)[0] : 1;
         continue;
       }
-      const FacetSample sample = sample_at(rows, f, shape, options, most_allowed);
-      const double depth = excess_at(sample, options);
+      const FacetSample sample = at ? at->points[n] : sample_at(rows, f, shape, options, most_allowed);
+      const double depth = at ? at->penetration[n] - sample.allowed : excess_at(sample, options);
       radii += axisymmetric ? sample.place[0] : 1;
       if (depth > found.largest_excess) found.largest_excess = depth;
       if (depth > least) inside.emplace_back(depth, sample.place);
@@ -249,15 +249,18 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
   const auto block = to_host(mesh.block);
   const auto lame = to_host(fem::lame_table(d, materials));
   std::vector<double> squared(rows.num_facets(), 0.), width(rows.num_facets(), 0.);
+  SampledFacet at_coarse, at_fine;
   double sum = 0;
   for (std::size_t n = 0; n < owned.size(); ++n) {
     const LO f = owned[n];
     const double lambda = lame(block(rows.cell(f)), 0), mu = lame(block(rows.cell(f)), 1), modulus = lambda + 2 * mu;
     const bool unseen = rows.bears_nothing(f), partly = rows.is_partly_open(f);
+    const bool all_touches = shares && !unseen && !partly;
+    if (!unseen) reading.sample(f, coarse, at_coarse);
     Found found;
     if (possible[n] >= 0) {
-      const bool all_touches = shares && !unseen && !partly;
-      found = (unseen ? samples : all_touches ? few : edges).look(f, modulus, least);
+      found =
+          all_touches ? few.look(f, modulus, least, &at_coarse) : (unseen ? samples : edges).look(f, modulus, least);
       if (unseen && searches && !(found.deepest > 0))
         if (const auto hidden = find_hidden_part(rows, f, shape, options, triangle, least, most_searched))
           found = found_in(*hidden, options, modulus);
@@ -267,14 +270,15 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     const PlaceBetweenNodes place{found.deepest, found.place, k, found.width, rows.size(f)};
     if (place.depth > mine.deepest.depth) mine.deepest = place;
     mine.smallest_gap = std::min(mine.smallest_gap, -found.largest_excess);
-    if (!unseen && (found.deepest > 0 || partly) && reading.is_off(f, modulus)) {
+    if (!unseen && (found.deepest > 0 || partly) && reading.is_off(f, modulus, at_coarse)) {
       const Misread misread = reading.read(f, modulus, 4 * mu * (lambda + mu) / modulus);
       mine.misread_energy += misread.energy;
       mine.misread_force += misread.force;
       mine.misread_penetration = std::max(mine.misread_penetration, misread.penetration);
       mine.misread_ends += misread.ends;
     } else if (!unseen && facet.order == 1 && detail == nullptr) {
-      mine.interpolation_work += reading.work_of_interpolation(f);
+      if (!shares) reading.sample(f, fine, at_fine);
+      mine.interpolation_work += reading.work_of_interpolation(f, shares ? at_coarse : at_fine);
     }
     if (!unseen) continue;
     sum += squared[f] = found.squared;

@@ -13,7 +13,18 @@ double GapReading::penetration_at_sample(const LO f, const FacetShape &shape, co
   return penetration_at(sample, options) - rows.interpolated(f, shape, FacetRows::dent);
 }
 
-bool GapReading::is_off(const LO f, const double modulus) const
+void GapReading::sample(const LO f, const std::vector<FacetShape> &lattice, SampledFacet &found) const
+{
+  const double most_allowed = rows.most_allowed(f);
+  found.points.clear();
+  found.penetration.clear();
+  for (const FacetShape &shape : lattice) {
+    found.points.push_back(sample_at(rows, f, shape, options, most_allowed));
+    found.penetration.push_back(penetration_at(found.points.back(), options));
+  }
+}
+
+bool GapReading::is_off(const LO f, const double modulus, const SampledFacet &at) const
 {
   const double compliance = rows.size(f) / modulus;
   for (int a = 0; a < rows.nodes; ++a)
@@ -25,8 +36,9 @@ bool GapReading::is_off(const LO f, const double modulus) const
     least = std::min(least, rows.column(f, a, FacetRows::penetration));
     most = std::max(most, rows.column(f, a, FacetRows::penetration));
   }
-  for (const FacetShape &shape : coarse) {
-    const double v = penetration_at_sample(f, shape, sample_at(rows, f, shape, options, 0));
+  for (std::size_t n = 0; n < coarse.size(); ++n) {
+    const FacetShape &shape = coarse[n];
+    const double v = at.penetration[n] - rows.interpolated(f, shape, FacetRows::dent);
     if (!std::isfinite(v)) return false;
     furthest = std::max(furthest, std::abs(v - rows.interpolated(f, shape, FacetRows::penetration)));
   }
@@ -50,13 +62,14 @@ int share_of_sample(const int nodes, const FacetShape &shape)
 
 } // namespace
 
-double GapReading::work_of_interpolation(const LO f) const
+double GapReading::work_of_interpolation(const LO f, const SampledFacet &at) const
 {
   double work = 0, weights = 0;
-  for (const FacetShape &shape : fine) {
-    const FacetSample sample = sample_at(rows, f, shape, options, 0);
-    const double weight = share_of_sample(rows.nodes, shape) * (axisymmetric ? sample.place[0] : 1);
-    const double off = rows.interpolated(f, shape, FacetRows::penetration) - penetration_at_sample(f, shape, sample);
+  for (std::size_t n = 0; n < fine.size(); ++n) {
+    const FacetShape &shape = fine[n];
+    const double weight = share_of_sample(rows.nodes, shape) * (axisymmetric ? at.points[n].place[0] : 1);
+    const double v = at.penetration[n] - rows.interpolated(f, shape, FacetRows::dent);
+    const double off = rows.interpolated(f, shape, FacetRows::penetration) - v;
     if (!std::isfinite(off)) return 0; // the obstacle is missed
     work += weight * rows.interpolated(f, shape, FacetRows::pressure) * off;
     weights += weight;

@@ -15,6 +15,12 @@ struct Misread {
   double ends = 0; // half of the facet if its nodes bear and a sample does not [m^(dim-1)]
 };
 
+/// The points of a lattice on a facet, and how deep each lies in the foundation that has no dents [m].
+struct SampledFacet {
+  std::vector<FacetSample> points;
+  std::vector<double> penetration;
+};
+
 /// Of facets that bear a pressure what lies between their nodes: nodal quadrature has the gap's interpolant there.
 struct GapReading {
   const ContactOptions &options;
@@ -22,15 +28,18 @@ struct GapReading {
   const std::vector<FacetShape> &fine, &coarse;
   bool axisymmetric;
 
+  /// The samples of one of the two lattices.
+  void sample(LO f, const std::vector<FacetShape> &lattice, SampledFacet &found) const;
   /// Whether samples are far from what the nodes show: the gap jumps, or has a kink. NaN and infinity, where the obstacle is missed, are not.
   /// Nor does nodal quadrature see a node without weight that lies deeper in the foundation than its pressure explains.
-  /// @param modulus  of the cell: lambda + 2 mu [Pa]
-  bool is_off(LO f, double modulus) const;
+  /// @param modulus  of the cell: lambda + 2 mu [Pa]   @param at  samples of the coarse lattice
+  bool is_off(LO f, double modulus, const SampledFacet &at) const;
   /// Of a facet that is_off().
   /// @param modulus, of_surface  of the cell: lambda + 2 mu, and E/(1 - nu^2), by which a surface gives way [Pa]
   Misread read(LO f, double modulus, double of_surface) const;
   /// The work of the pressure over what the interpolant differs by from a smooth gap [J], in 2D per m; with its sign.          (3.16b)
-  double work_of_interpolation(LO f) const;
+  /// @param at  samples of the fine lattice
+  double work_of_interpolation(LO f, const SampledFacet &at) const;
 
 private:
   // Of the range of the gap at the nodes. Between nodes beside a jump it is off by a half or more, on a smooth slope by little.
