@@ -14,22 +14,22 @@ import json
 import os
 import sys
 
-from suite import accuracy, adaptive, contact, families, kernels, paper, peers, scaling, step_42
+from suite import accuracy, adaptive, contact, families, kernels, own_meshes, paper, peers, scaling, step_42
 from suite.program import Failure, Program
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TABLES = {"table-1": paper.table_1, "table-2": paper.table_2, "figure-2": paper.figure_2, "cg": scaling.cg_iterations,
           "mesh-size": scaling.mesh_size, "ranks": scaling.ranks, "contact": contact.contact_cost, "kernels": kernels.kernels,
           "accuracy": accuracy.accuracy, "adaptive": adaptive.adaptive, "peers": peers.peers,
-          "peers-in-space": peers.peers_in_space, "step-42": step_42.step_42, "families": families.families,
+          "peers-in-space": peers.peers_in_space, "own-mesh": own_meshes.own_mesh, "step-42": step_42.step_42, "families": families.families,
           "growth": families.steps_over_mesh}
 # Meshes: 1/h; of "accuracy" also sizes of cells, and targets; of "adaptive" first the least target. The last number of "ranks",
-# "peers", "peers in space", "step-42" and "adaptive": where the criterion is judged; of "contact": whether it is; "kernels": in the
+# "peers", "peers in space", "step-42" and "adaptive": where the criterion is judged; of "contact" and "own mesh": whether it is; "kernels": in the
 # plane, in space. "families": scenes and their size; "growth": the finest meshes.
 FULL = {"table 1": [8, 16, 32, 64, 128, 256, 512], "table 2": 128, "figure 2": [8, 16, 32, 64, 128, 256], "two ranks from": 256,
         "cg": ([32, 64, 128], [1, 2, 3]), "mesh size": [32, 64, 128, 256, 512], "ranks": ([128, 256], 3, 256),
         "contact": (256, 3, True), "kernels": ([256, 512], [16, 32]), "peers": ([128], 2, 128),
-        "peers in space": ([12, 24], 2, 24), "step-42": ([32, 64], 2, 64),
+        "peers in space": ([12, 24], 2, 24), "own mesh": ((48, 34, 34), 2, True), "step-42": ([32, 64], 2, 64),
         "accuracy": {"elements": ("P1", "Q1", "P2", "Q2"), "box": [16, 32, 64, 128], "finer Q1": [256, 512],
                      "peers": [16, 32, 64, 128],
                      "graded": ([0.05, 0.025, 0.0125, 0.00625], [0.2, 0.1, 0.05, 0.025]), "hertz": [4, 2, 1, 0.5],
@@ -37,7 +37,7 @@ FULL = {"table 1": [8, 16, 32, 64, 128, 256, 512], "table 2": 128, "figure 2": [
         "adaptive": (0, 3, 512), "families": (200, "full"), "growth": {"plane": 256, "space": 32}}
 QUICK = {"table 1": [8, 16, 32], "table 2": 32, "figure 2": [8, 16, 32], "two ranks from": 32, "cg": ([16, 32], [1, 2]),
          "mesh size": [16, 32], "ranks": ([32], 1, None), "contact": (32, 1, False), "kernels": ([32], [4]), "peers": ([16], 1, None),
-         "peers in space": ([4], 1, None), "step-42": ([8, 16], 1, None),
+         "peers in space": ([4], 1, None), "own mesh": ((12, 8, 8), 1, False), "step-42": ([8, 16], 1, None),
          "accuracy": {"elements": ("Q1", "P2"), "box": [8, 16], "finer Q1": [], "peers": [16], "graded": ([0.2], [0.4]),
                       "hertz": [8], "targets": [0.05, 0.02]},
          "adaptive": (0.02, 1, None), "families": (24, "small"), "growth": {"plane": 32, "space": 16}}

@@ -116,7 +116,7 @@ class Python:
         print("  %s, %d thread(s)" % (" ".join([script, *arguments]), threads), file=sys.stderr, flush=True)
         environment = {**self.environment, "OMP_NUM_THREADS": str(threads), "OPENBLAS_NUM_THREADS": str(threads)}
         run = execute([self.path, os.path.join(HERE, script), *arguments], environment=environment, timeout=TIMEOUT)
-        return {**json.loads(run.output.splitlines()[-1]), "process": run.seconds, "cpu": run.cpu_seconds}
+        return {**json.loads(run.output.splitlines()[-1]), "process": run.seconds, "cpu": run.cpu_seconds, "gib": run.gib}
 
 
 def compare(bench, scene, peer, n, xi, threads, repeats):
