@@ -106,6 +106,16 @@ std::string prescribed_text(const fem::DirichletCondition &condition)
   return joined_by(parts, ", ");
 }
 
+/// What the divisions of a box have of their own along a coordinate.
+std::string grading_text(const mesh::BoxOptions &box, const int c)
+{
+  if (box.periodic[c]) return " (periodic)";
+  if (!box.graded(c)) return "";
+  const std::vector<double> &ends = box.ends[c];
+  return " (graded: cells of " + plain_number(ends[1] - ends[0]) + " at the lower end to " +
+         plain_number(ends.back() - ends[ends.size() - 2]) + " at the upper end)";
+}
+
 void print_body(Block &block, const Scene &scene, const fem::Discretization &d)
 {
   const UnitNames &units = scene.model.units;
@@ -116,7 +126,7 @@ void print_body(Block &block, const Scene &scene, const fem::Discretization &d)
   std::string box;
   for (int c = 0; c < d.dim(); ++c)
     box += std::string(c > 0 ? ", " : "") + "xyz"[c] + " from " + plain_number(body.lower[c]) + " to " +
-           plain_number(body.upper[c]) + (mesh.box && mesh.box->periodic[c] ? " (periodic)" : "");
+           plain_number(body.upper[c]) + (mesh.box ? grading_text(*mesh.box, c) : "");
   block.line("body", std::to_string(cells) + " cells of " + mesh.element.name() +
                          (d.dim() == 2 ? ", " + fem::name_of(d.kinematics) : "") + "; " + box + " " + units.length);
   const std::string name = d.per_length() ? "area" : "volume";

@@ -40,6 +40,16 @@ class Graded(RpcTestCase):
                     coarse, middle, fine = (self.solve(STRIP.format(cells=cells, element=element, ratio=ratio))["energy_J"] for cells in ((20, 40, 80) if order == 2 else (10, 20, 40)))
                     self.assertGreater((coarse - middle) / (middle - fine), 0.75 * 2**order)
 
+    @unittest.skipIf(RANKS > 1, "nothing here depends on ranks")
+    def test_check_tells_the_first_and_the_last_cell(self):
+        (self.folder / "deck.yaml").write_text(STRIP.format(cells=20, element="Q1", ratio=8.0))
+        out = self.rpc("--input=deck.yaml", "--check").stdout
+        q = 8.0 ** (1 / 19)
+        first = (q - 1) / (q**20 - 1)
+        self.assertIn(f"x from 0 to 1 (periodic), y from 0 to 1 (graded: cells of {first:.6g} at the lower end to {8 * first:.6g} at the upper end)", " ".join(out.split()))
+        (self.folder / "deck.yaml").write_text(STRIP.format(cells=20, element="Q1", ratio=1.0))
+        self.assertNotIn("graded", self.rpc("--input=deck.yaml", "--check").stdout)
+
     def test_iterations_are_those_of_equal_cells_and_ranks_agree(self):
         for element, along in (("Q1", 24), ("P1", 12)):
             with self.subTest(element=element):
