@@ -37,12 +37,22 @@ std::vector<FacetShape> lattice_of(const mesh::Element &facet, const int parts)
   const bool triangle = facet.dim == 2 && facet.shape == mesh::Shape::simplex;
   std::vector<FacetShape> lattice;
   const int rows = facet.dim == 2 ? parts : 0;
+  double all = 0;
   for (int j = 0; j <= rows; ++j)
     for (int i = 0; i <= (triangle ? parts - j : parts); ++i) {
       double X[2] = {double(i) / parts, double(j) / parts};
       for (double &x : X) x = triangle ? x : 2 * x - 1;
       evaluate(X, lattice.emplace_back());
+      // Of the triangles or quadrilaterals around it, 6 or 4 inside.
+      const int edges = triangle ? (i == 0) + (j == 0) + (i + j == parts) : 0;
+      double &share = lattice.back().share;
+      if (triangle)
+        share = edges == 0 ? 6 : edges == 1 ? 3 : 1;
+      else
+        share = (i % parts == 0 ? 1 : 2) * (rows == 0 || j % rows == 0 ? 1 : 2);
+      all += share;
     }
+  for (FacetShape &point : lattice) point.share /= all;
   return lattice;
 }
 

@@ -18,11 +18,12 @@ namespace rpc::contact
 struct FacetShape {
   static constexpr int most_nodes = 9, most_dim = 2;
   double value[most_nodes], slope[most_nodes][most_dim];
+  double share = 0; // of the facet that belongs to it, of points of a lattice
 };
 using EvaluateShape = std::function<void(const double *X, FacetShape &)>;
 EvaluateShape shape_of(const mesh::Element &facet);
 
-/// A lattice of points of a facet's reference cell, the vertices among them.
+/// A lattice of points of a facet's reference cell, the vertices among them, with the shares of the trapezoidal rule.
 /// @param parts  into which the lattice divides an edge
 std::vector<FacetShape> lattice_of(const mesh::Element &facet, int parts);
 

@@ -45,29 +45,12 @@ bool GapReading::is_off(const LO f, const double modulus, const SampledFacet &at
   return furthest > off * (most - least);
 }
 
-namespace
-{
-
-/// The share of a facet of order 1 that belongs to a point of its lattice, over that of a corner: the trapezoidal rule.
-int share_of_sample(const int nodes, const FacetShape &shape)
-{
-  constexpr double rounding = 1e-12;
-  const auto away =
-      std::count_if(shape.value, shape.value + nodes, [](const double value) { return value < rounding; });
-  const bool inside = away == 0, corner = away == nodes - 1;
-  if (corner) return 1;
-  if (nodes == 3) return inside ? 6 : 3;
-  return nodes == 4 && inside ? 4 : 2;
-}
-
-} // namespace
-
 double GapReading::work_of_interpolation(const LO f, const SampledFacet &at) const
 {
   double work = 0, weights = 0;
   for (std::size_t n = 0; n < fine.size(); ++n) {
     const FacetShape &shape = fine[n];
-    const double weight = share_of_sample(rows.nodes, shape) * (axisymmetric ? at.points[n].place[0] : 1);
+    const double weight = shape.share * (axisymmetric ? at.points[n].place[0] : 1);
     const double v = at.penetration[n] - rows.interpolated(f, shape, FacetRows::dent);
     const double off = rows.interpolated(f, shape, FacetRows::penetration) - v;
     if (!std::isfinite(off)) return 0; // the obstacle is missed
@@ -102,10 +85,10 @@ Misread GapReading::read(const LO f, const double modulus, const double of_surfa
   }
   const double moved = (high - low) * rows.size(f) / (2 * of_surface); // by pressures that jump half a facet further
   Misread found;
-  double radii = 0;
+  double weights = 0;
   for (const FacetShape &shape : fine) {
     const FacetSample sample = sample_at(rows, f, shape, options, 0);
-    const double radius = axisymmetric ? sample.place[0] : 1;
+    const double weight = shape.share * (axisymmetric ? sample.place[0] : 1);
     const double dent = rows.interpolated(f, shape, FacetRows::dent);
     const double v = penetration_at_sample(f, shape, sample) + layer * rows.interpolated(f, shape, FacetRows::pressure);
     if (!std::isfinite(v)) return {};
@@ -116,13 +99,13 @@ Misread GapReading::read(const LO f, const double modulus, const double of_surfa
       off_energy -= shape.value[a] * energy[a];
       off_force -= shape.value[a] * pressure[a];
     }
-    found.energy += radius * std::abs(off_energy);
-    found.force += radius * std::abs(off_force);
+    found.energy += weight * std::abs(off_energy);
+    found.force += weight * std::abs(off_force);
     found.penetration = std::max(found.penetration, dent + v - layer * p + moved);
     if (low > 0 && !(p > 0)) found.ends = rows.area(f) / 2;
-    radii += radius;
+    weights += weight;
   }
-  const double share = radii > 0 ? rows.area(f) / radii : 0;
+  const double share = weights > 0 ? rows.area(f) / weights : 0;
   found.energy *= share;
   found.force *= share;
   return found;

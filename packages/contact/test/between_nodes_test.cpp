@@ -303,6 +303,25 @@ TEST(BetweenNodes, WhereTheGapJumpsWithinAFacetReadingItAtNodesLeavesEnergyForce
   }
 }
 
+TEST(BetweenNodes, SamplesOfFacesCountByTheTrapezoidalRule)
+{
+  // The same in space, with a step at x = 0.7: of it linear interpolation is off by 0, 1/4, 1/2, 1/4 and 0 at the five samples of an edge.
+  const double k = 1000, p = 10, jump = 0.01, h = 0.5;
+  auto side = touching("bottom");
+  side.yield_stress = ScalarField(1e300);
+  side.stiffness = ScalarField(k);
+  side.gap = ScalarField("step", [=](const Point &x) { return x[0] < 0.7 ? -jump : 0; });
+  const double stiffness = 1 / (h / (steel.lambda() + 2 * steel.mu()) + 1 / k);
+  for (const auto shape : {mesh::Shape::tensor, mesh::Shape::simplex}) {
+    const Looked looked({3, 1, shape}, side, p);
+    const double all = looked.result.between.misread_force / (h * 1 * stiffness * jump);
+    if (shape == mesh::Shape::tensor) {
+      EXPECT_NEAR(all, 0.25, 1e-9);
+    }
+    EXPECT_NEAR(all, (0.4 * 0.4 + 0.6 * 0.6) / 2, 0.03); // of the integral
+  }
+}
+
 TEST(BetweenNodes, DepthsBesideAJumpOfTheGapCountFromTheSurfaceWithoutDents)
 {
   // The same by a step before, whose dents are as deep everywhere as the body has moved since.
