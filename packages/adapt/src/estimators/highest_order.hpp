@@ -7,7 +7,7 @@ namespace rpc::adapt
 {
 
 /// How deep the foundation may give way, and how large the pressure may be where it yields and hardens: with what the highest order of the
-/// facets adds along edges whose nodes all bear one.                                                    doc/theory.md (10.8c)
+/// facets adds along edges along which it does.                                                    doc/theory.md (10.8c)
 struct HighestOrder {
   ContactTerms terms; // in
   int num_vertices;   // of a facet, in
@@ -35,12 +35,13 @@ struct HighestOrder {
       const int b = (a + 1) % num_vertices, m = quadratic ? num_vertices + a : -1;
       const double deeper = added(f, a, b, m, int(pressed)), more = added(f, a, b, m, int(pressure));
       const int nodes[3] = {m, a, b};
-      bool bears = true; // past a jump of the gap depths tell nothing: (3.16a)
-      for (int k = quadratic ? 0 : 1; k < 3; ++k) bears = bears && at(f, nodes[k], pressure) > 0;
-      if (!bears) continue;
+      bool gives_way =
+          true; // all along: past a jump of the gap, and where the foundation begins to give way, differences tell of a kink
+      for (int k = quadratic ? 0 : 1; k < 3; ++k)
+        gives_way = gives_way && at(f, nodes[k], pressure) > 0 && at(f, nodes[k], pressed) > 0;
+      if (!gives_way) continue;
       for (int k = quadratic ? 0 : 1; k < (middles_alone ? 1 : 3); ++k) {
         const double p = at(f, nodes[k], pressure), w = at(f, nodes[k], pressed);
-        if (!(w > 0)) continue;
         depth = math::fmax(depth, w + deeper);
         const contact::Foundation law = terms.law_at(f, nodes[k]);
         if (contact::hardens(law) && p >= contact::yield_limit(law)) most = math::fmax(most, p + more);
