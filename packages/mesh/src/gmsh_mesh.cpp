@@ -121,10 +121,13 @@ Element element_of(const std::string &where, const GmshContents &contents)
     for (const auto &group : names) text += (group == *names.begin() ? "" : ", ") + group;
     return text;
   };
-  const auto other = std::find_if(contents.elements.begin(), contents.elements.end(), [&](const auto &elements) {
-    return contents.groups[elements.group].dim == contents.dim && elements.type != first->type;
-  });
-  RPC_REQUIRE_CODE(other == contents.elements.end(), ExitCode::bad_mesh,
+  const auto is_linear = [](const GmshElements &elements) { return cell_kind(elements.type)->linear == elements.type; };
+  const GmshElements *other = nullptr; // one of another order: those of one order would have been divided
+  for (const auto &elements : contents.elements)
+    if (contents.groups[elements.group].dim == contents.dim && elements.type != first->type &&
+        (!other || is_linear(elements) != is_linear(*first)))
+      other = &elements;
+  RPC_REQUIRE_CODE(!other, ExitCode::bad_mesh,
                    where << "cells must be of one order, 1 or 2, got " << summary(first->type) << " and "
                          << summary(other->type) << "; mesh all of them with order 1, or with 2");
   return *element_of_gmsh_type(first->type);
