@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sides that a force moves as one: what displacement it leads to, what it is refused for, and that a restart goes on with the same digits."""
+"""Sides and tools that a force moves: what displacement it leads to, what it is refused for, and that a restart goes on with the same digits."""
 
 import unittest
 
@@ -31,6 +31,17 @@ BALL = """ball:
   Uzawa: {Tolerance: 1.0e-11}
   MORE
 """
+SOFT = """tool:
+  Mesh: {Lower: [0.0, 0.0], Upper: [1.1, 1.0], Cells: [20, 18], Element: Q1}
+  Kinematics: axisymmetric
+  Material: {Young's Modulus: 200.0, Poisson's Ratio: 0.3}
+  Dirichlet: {top: {X: 0.0, Y: 0.0}}
+  Contact:
+    Side: bottom
+    Stiffness: 25.0
+    Obstacle: {Type: sphere, Radius: 1.0, Centre: [0.0, -1.0], TOP}
+  Output: {Exodus: false}
+"""
 YIELDS, SPRINGS, RUBS = "Yield Stress: 40.0", "Stiffness: 3000.0\n    Yield Stress: 60.0", "Friction Coefficient: 0.3"
 STEPS = "Steps: {Times: [0.5, 1.0, 1.5, 2.0]}"
 FORCE = '"t < 1 ? -30*t : t < 1.5 ? -30 + 20*(t - 1) : -20 - 50*(t - 1.5)"'
@@ -51,6 +62,15 @@ class Forces(WrittenDeckTestCase):
                 self.assertAlmostEqual(found["reaction_force"]["top"][1], force[1], delta=SAME * abs(force[1]))
                 self.assertAlmostEqual(found["contact_force"][1], -force[1], delta=SAME * abs(force[1]))
                 self.assertLessEqual(sum(found["newton_iterations"]), 1.5 * sum(given["newton_iterations"]) + 5)
+
+    def test_a_tool_on_soft_springs_takes_as_few_steps_by_its_force_as_by_its_path(self):
+        for force in (1.5e-4, 5e-4, 2e-3):  # one point bears it, two, more
+            with self.subTest(force=force):
+                found = self.solve("pressed", written(SOFT, f"Force Y: {force!r}"))
+                moved = found["obstacle_displacement"][1]
+                given = self.solve("moved", SOFT.replace("[0.0, -1.0], TOP", f'[0.0, "-1.0 + {moved!r}*t"]'))
+                self.assertAlmostEqual(given["contact_force"][1], force, delta=1e-7 * force)
+                self.assertLessEqual(sum(found["newton_iterations"]), sum(given["newton_iterations"]) + 2)
 
     def test_a_history_of_forces_follows_its_dents_and_its_work_is_that_of_the_path(self):
         self.solve("pressed", written(BOX, f"Force Y: {FORCE}", YIELDS, STEPS))

@@ -5,6 +5,7 @@
 #include "rpc/core/error.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/fem/surface.hpp"
+#include "rpc/solver/exact_line_search.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -182,6 +183,22 @@ bool obstacle_rests(const Problem &problem, const StepSolution &s, const double 
 {
   const double rounding = std::numeric_limits<double>::epsilon() * length(s.step.obstacle);
   return !(length(left_to_go(problem, s)) > tolerance * s.u->normInf() + rounding);
+}
+
+void settle_obstacle(const Problem &problem, const ConvexFunctional &functional, Vector &u)
+{
+  std::vector<RCP<const Vector>> translations; // which strain nothing
+  for (const int c : fem::floating_components(problem.model().dirichlet)) {
+    Point along{};
+    along[c] = 1;
+    translations.push_back(shifted(Vector(u.getMap()), along, problem.discretization().dim()));
+  }
+  if (translations.empty()) return;
+  Vector F(u.getMap());
+  functional.gradient(u, F);
+  const auto within = functional.within(u, translations, F);
+  const auto way = solver::least_within(*within, std::vector<double>(translations.size()));
+  for (std::size_t k = 0; k < translations.size(); ++k) u.update(way[k], *translations[k], 1.);
 }
 
 void rest_where_led(const Problem &problem, const Point &before, const double tolerance, StepSolution &s)

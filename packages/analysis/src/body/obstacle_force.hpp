@@ -52,6 +52,9 @@ private:
 /// Whether that is no more than a tolerance, in units of the largest displacement: the contact points were seen from where the obstacle is. Collective.
 bool obstacle_rests(const Problem &problem, const StepSolution &s, double tolerance);
 
+/// Moves the obstacle that a force moves, seen as u is, to where the pressures that the functional has there bear the force. Collective.  (3.17f)
+void settle_obstacle(const Problem &problem, const ConvexFunctional &functional, Vector &u);
+
 /// Sees a solution from where it leads its obstacle, if searches from there are not expected to lead it further than a tolerance. Collective. (3.17d)
 /// @param before  see Starts::led_before
 void rest_where_led(const Problem &problem, const Point &before, double tolerance, StepSolution &s);

@@ -39,7 +39,7 @@ struct LastMinimum {
   DualVariables::Values dual; ///< with friction: what it had, before pressures became multipliers
 };
 
-Prediction predict(const Step &step, Iterate &iterate, Vector &u, const Starts &starts);
+Prediction predict(const Problem &problem, const Step &step, Iterate &iterate, Vector &u, const Starts &starts);
 Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector> &u, SolverState &state,
                       const StepOptions &options, int iteration, const LastMinimum &last,
                       const std::optional<PredictedBy> &predicted, const Progress &progress);
@@ -66,11 +66,13 @@ StepSolution solve_with(const Problem &problem, const Step &step, SolverState &s
   if (progress.start) progress.start(problem, step);
   {
     const Timed timer("prediction", s.prediction_seconds);
-    Prediction prediction = predict(step, iterate, *u, starts); // (5.11), (11.5)
+    Prediction prediction = predict(problem, step, iterate, *u, starts); // (5.11), (11.5)
     s.not_predicted = std::move(prediction.reason);
     s.levels = std::move(prediction.work);
     s.start = prediction.nearest;
     if (prediction.start) predicted = std::move(prediction.by);
+    if (!step.on_floating.is_null() && iterate.duals().given()) // its pressures hold the one motion that springs would
+      iterate.step_taken(std::numeric_limits<double>::infinity()); // (9.8)
   }
   {
     const Timed timer("solve", s.solve_seconds);
@@ -175,23 +177,21 @@ bool start_from_nearest(Iterate &iterate, Vector &u, const Starts &starts, std::
 }
 
 /// @return its reason is why no coarser mesh predicted the start; empty if one did, or none was needed
-Prediction predict(const Step &step, Iterate &iterate, Vector &u, const Starts &starts)
+Prediction predict(const Problem &problem, const Step &step, Iterate &iterate, Vector &u, const Starts &starts)
 {
   Prediction prediction;
   if (starts.states.empty() && !contact::is_loaded(*u.getMap()->getComm(), step.elastic, step.contact)) {
     prediction.reason = "nothing loads the body"; // the start is the solution; a coarser mesh would see other gaps
     return prediction;
   }
-  const bool near = !starts.states.empty() && start_from_nearest(iterate, u, starts, prediction.nearest);
-  if (near) return prediction;
+  if (!starts.states.empty() && start_from_nearest(iterate, u, starts, prediction.nearest)) return prediction;
   const std::size_t nearest = prediction.nearest;
-  if (starts.predict)
-    prediction = starts.predict();
-  else
-    prediction.reason = "there is none";
+  prediction.reason = "there is none";
+  if (starts.predict) prediction = starts.predict();
   prediction.nearest = starts.states.empty() || prediction.start ? starts.states.size() : nearest;
   if (prediction.start) iterate.start_from(*prediction.start, u);
   if (!starts.states.empty()) prediction.reason.clear();
+  if (starts.predict || starts.states.empty()) settle_obstacle(problem, iterate, u); // (3.17f)
   return prediction;
 }
 
