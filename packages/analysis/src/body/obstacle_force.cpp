@@ -8,6 +8,7 @@
 #include "rpc/solver/exact_line_search.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <sstream>
 
@@ -183,6 +184,12 @@ bool obstacle_rests(const Problem &problem, const StepSolution &s, const double 
 {
   const double rounding = std::numeric_limits<double>::epsilon() * length(s.step.obstacle);
   return !(length(left_to_go(problem, s)) > tolerance * s.u->normInf() + rounding);
+}
+
+bool closes_under_force(const Model &model)
+{
+  const contact::ContactOptions *const pressed = pressed_by_force(model);
+  return pressed != nullptr && !pressed->yield_stress.at && std::isinf(pressed->yield_stress.constant);
 }
 
 void settle_obstacle(const Problem &problem, const ConvexFunctional &functional, Vector &u)
