@@ -107,6 +107,14 @@ class Bricks:
                 around = list(itertools.product(*({c - c % 2, c + c % 2} for c in place)))
                 self.nodes[self.node(place)] = tuple(sum(self.nodes[self.node(a)][d] for a in around) / len(around) for d in range(3))
 
+    def middles(self):
+        """(node, those of both ends) of the edges of tetrahedra of order 2."""
+        for cell in self.cells():
+            for corners in self._parts(cell):
+                nodes = [self.node(place) for place in with_middles("tetrahedron", 2, corners)]
+                for node, (a, b) in zip(nodes[4:], MIDDLES["tetrahedron"]):
+                    yield node, nodes[a], nodes[b]
+
     def cells(self):
         return [c for c in itertools.product(*(range(n) for n in self.number)) if self.keep(*c)]
 

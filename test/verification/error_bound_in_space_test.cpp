@@ -80,6 +80,30 @@ TEST(ErrorBoundInSpace, HoldsTheEnergyOfAFinerMeshAndIsNear)
   }
 }
 
+TEST(ErrorBoundInSpace, OfOrder2HoldsTheEnergyOfAFinerMeshAndIsNear)
+{
+  // As above: the reference has cells a third as long.
+  const std::vector<std::vector<std::string>> scenes = {
+      {"Contact->Yield Stress=inf"},
+      {"Contact->Yield Stress=1"},
+      {"Contact->Yield Stress=6", "Contact->Gap=0.02*x - 0.01"},
+      {"Contact->Yield Stress=8", "Traction->front->Z=-6*sin(1 + 0.2*x*y)", "Body Force->Z=-3", "Body Force->X=2"},
+      {"Traction->front->X=2", "Dirichlet->bottom->Y=0", "Dirichlet->top->Y=0", "Contact->Gap=0.001"}};
+  for (const auto &scene : scenes) {
+    SCOPED_TRACE(scene.back());
+    std::vector<std::string> more = scene;
+    more.push_back("Mesh->Element=P2");
+    const Solution s = bounded(more), fine = finer(scene, "{12, 9, 6}");
+    ASSERT_TRUE(fine.estimate);
+    const double left = fine.estimate->total() / 2, true_error = s.bound->upper - (fine.energy - left);
+    EXPECT_LT(s.bound->lower, fine.energy - left);
+    EXPECT_GT(s.bound->upper, fine.energy);
+    EXPECT_LT(s.bound->upper - s.bound->lower, 1.6 * 1.6 * true_error);
+    EXPECT_LT(s.bound->imbalance, 1e-11);
+    for (int k = 0; k < 6; ++k) EXPECT_LT(s.bound->steps[k + 1], s.bound->steps[k]);
+  }
+}
+
 TEST(ErrorBoundInSpace, CountsWhatLoadsHaveBeyondTheOrder)
 {
   // On both triangles of the upper side the load is a polynomial of degree 2 that has no moment with linear functions, and little else.
@@ -96,13 +120,15 @@ TEST(ErrorBoundInSpace, CountsWhatLoadsHaveBeyondTheOrder)
 TEST(ErrorBoundInSpace, IsZeroWhereTheElementsHaveTheSolution)
 {
   // A block under an even pressure of 2.55 Pa, or 2 Pa where it yields, that slides at its sides: constant stresses, in contact or yielding.
-  for (const char *limit : {"inf", "2"}) {
-    SCOPED_TRACE(limit);
-    const Solution s = bounded({std::string("Contact->Yield Stress=") + limit},
-                               std::string(RPC_TEST_DECKS) + "/even_block_in_space.xml");
-    EXPECT_GT(s.energy_norm_squared, 1e-6);
-    for (const double bound : s.bound->steps) EXPECT_LT(bound, 1e-11 * s.energy_norm_squared);
-  }
+  for (const char *limit : {"inf", "2"})
+    for (const char *element : {"P1", "P2"}) {
+      SCOPED_TRACE(std::string(limit) + ", " + element);
+      const Solution s =
+          bounded({std::string("Contact->Yield Stress=") + limit, std::string("Mesh->Element=") + element},
+                  std::string(RPC_TEST_DECKS) + "/even_block_in_space.xml");
+      EXPECT_GT(s.energy_norm_squared, 1e-6);
+      for (const double bound : s.bound->steps) EXPECT_LT(bound, 1e-11 * s.energy_norm_squared);
+    }
 }
 
 TEST(ErrorBoundInSpace, IsWhatAdaptedMeshesStopByAndFollow)
@@ -141,6 +167,12 @@ TEST(ErrorBoundInSpace, CoversDisplacementsThatTheElementsRepresent)
   const Solution s = bounded(bent), fine = finer(bent, "{8, 6, 4}");
   EXPECT_LT(s.bound->lower, fine.energy);
   EXPECT_GT(s.bound->upper, fine.energy);
+  const std::vector<std::string> curved = {"Dirichlet->left->X=0.002*z^2 - 0.001*y*z", "Contact->Gap=0.002*x*x"};
+  std::vector<std::string> quadratic = curved;
+  quadratic.push_back("Mesh->Element=P2");
+  const Solution of_order_2 = bounded(quadratic), finer_2 = finer(curved, "{8, 6, 4}");
+  EXPECT_LT(of_order_2.bound->lower, finer_2.energy);
+  EXPECT_GT(of_order_2.bound->upper, finer_2.energy);
 }
 
 TEST(ErrorBoundInSpace, OfABodyThatNothingStrainsIsMissing)
@@ -167,9 +199,9 @@ TEST(ErrorBoundInSpace, IsRefusedWithWhatIsCovered)
       EXPECT_NE(std::string(error.what()).find("guaranteed covers"), std::string::npos) << error.what();
     }
   };
-  refused({"Mesh->Element=P2"}, "the cells are P2");
   refused({"Mesh->Element=Q2"}, "the cells are Q2");
   refused({"Contact->Gap=0.01*x^2"}, "another than between its nodes");
+  refused({"Contact->Gap=0.01*x^3", "Mesh->Element=P2"}, "another than between its nodes");
   refused({"Contact->Yield Stress=5 + x"}, "depends on the place");
   refused({"Dirichlet->left->X=0.001*y^2"}, "displacements that the elements represent");
   refused({"Traction->front->Z=x > 1.1 ? -10 : 0"}, "smooth within each cell");

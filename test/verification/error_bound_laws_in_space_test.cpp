@@ -47,20 +47,23 @@ TEST(ErrorBoundOfLawsInSpace, HoldsTheEnergyOfTheSameBodyInThePlane)
               {"friction up to a limit", {"Contact->Friction Bound=2", "Contact->Friction Limit=0.7"}}};
   constexpr double thickness = 0.25;
   const Assignments slice = {"Mesh->Lower={0, 0, 0}", "Mesh->Upper={2, 1, 0.25}", "Mesh->Cells={8, 4, 1}",
-                             "Mesh->Element=P1",      "Dirichlet->front->Z=0",    "Dirichlet->back->Z=0"};
-  for (const auto &law : laws) {
-    SCOPED_TRACE(law.name);
-    const Assignments numbers = joined({"Kinematics=plane strain"}, law.numbers);
-    const Solution plane = bounded("heavy_block.xml", joined(numbers, {"Mesh->Cells={16, 12}"})),
-                   s = bounded("heavy_block.xml", joined(numbers, slice));
-    const double low = thickness * plane.bound->lower, high = thickness * plane.bound->upper;
-    EXPECT_GT(s.contact.total.force[1], 0);
-    EXPECT_LE(s.bound->lower, high);
-    EXPECT_GE(s.bound->upper, low);
-    const double width = s.bound->upper - s.bound->lower;
-    EXPECT_LT(width, 2.8 * 2.8 * (s.bound->upper - low)); // one cell across is not much
-    EXPECT_LT(high - low, 0.1 * width);                   // narrow
-  }
+                             "Dirichlet->front->Z=0", "Dirichlet->back->Z=0"};
+  for (const auto &law : laws)
+    for (const std::string element : {"P1", "P2"}) {
+      SCOPED_TRACE(law.name + (", " + element));
+      const bool quadratic = element == "P2";
+      const Assignments numbers = joined({"Kinematics=plane strain"}, law.numbers);
+      const Solution plane = bounded("heavy_block.xml",
+                                     joined(numbers, {quadratic ? "Mesh->Cells={40, 30}" : "Mesh->Cells={16, 12}"})),
+                     s = bounded("heavy_block.xml", joined(joined(numbers, slice), {"Mesh->Element=" + element}));
+      const double low = thickness * plane.bound->lower, high = thickness * plane.bound->upper;
+      EXPECT_GT(s.contact.total.force[1], 0);
+      EXPECT_LE(s.bound->lower, high);
+      EXPECT_GE(s.bound->upper, low);
+      const double width = s.bound->upper - s.bound->lower, most = quadratic ? 1.85 : 2.8; // one cell across is not much
+      EXPECT_LT(width, most * most * (s.bound->upper - low));
+      EXPECT_LT(high - low, (quadratic ? 0.4 : 0.1) * width); // narrow
+    }
 }
 
 TEST(ErrorBoundOfLawsInSpace, IsZeroWhereTheElementsHaveTheSolution)
@@ -75,21 +78,25 @@ TEST(ErrorBoundOfLawsInSpace, IsZeroWhereTheElementsHaveTheSolution)
               {"dents",
                {"Contact->Yield Stress=1", "Contact->Hardening=600", "Steps->Times={1, 2, 3}",
                 "Dirichlet->front->Z=t < 1.5 ? -0.004 : (t < 2.5 ? -0.001 : -0.005)"}}};
-  for (const auto &scene : even) {
-    SCOPED_TRACE(scene.name);
-    const Solution s = bounded("even_block_in_space.xml", scene.numbers);
-    EXPECT_GT(s.energy_norm_squared, 1e-6);
-    EXPECT_GT(s.contact.total.max_pressure, 0.5);
-    for (const double bound : s.bound->steps) EXPECT_LT(bound, 1e-11 * s.energy_norm_squared);
-  }
+  for (const auto &scene : even)
+    for (const std::string element : {"P1", "P2"}) {
+      SCOPED_TRACE(scene.name + (", " + element));
+      const Solution s = bounded("even_block_in_space.xml", joined(scene.numbers, {"Mesh->Element=" + element}));
+      EXPECT_GT(s.energy_norm_squared, 1e-6);
+      EXPECT_GT(s.contact.total.max_pressure, 0.5);
+      for (const double bound : s.bound->steps) EXPECT_LT(bound, 1e-11 * s.energy_norm_squared);
+    }
 }
 
 TEST(ErrorBoundOfLawsInSpace, IsZeroOfABlockThatSlidesEvenly)
 {
-  const Solution s = bounded("sliding_block_in_space.xml", {});
-  EXPECT_EQ(s.bound->of, bound::EnergyBound::Of::energy_and_friction);
-  EXPECT_GT(s.contact.total.max_slip, 0.04);
-  for (const double bound : s.bound->steps) EXPECT_LT(bound, 1e-11 * s.energy_norm_squared);
+  for (const std::string element : {"P1", "P2"}) {
+    SCOPED_TRACE(element);
+    const Solution s = bounded("sliding_block_in_space.xml", {"Mesh->Element=" + element});
+    EXPECT_EQ(s.bound->of, bound::EnergyBound::Of::energy_and_friction);
+    EXPECT_GT(s.contact.total.max_slip, 0.04);
+    for (const double bound : s.bound->steps) EXPECT_LT(bound, 1e-11 * s.energy_norm_squared);
+  }
 }
 
 TEST(ErrorBoundOfLawsInSpace, OfAStepIsThatOfTheDentsThatTheStepBeforeHasLeft)

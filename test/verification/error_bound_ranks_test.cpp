@@ -59,7 +59,9 @@ TEST(ErrorBoundOnRanks, OfABodyInSpaceIsThatOfOneRank)
       {"Contact->Yield Stress=inf", "Mesh->Cells={3, 2, 2}"},
       {"Contact->Yield Stress=2", "Contact->Hardening=300", "Contact->Stiffness=3e3", "Contact->Friction Bound=0.3"},
       {"Contact->Yield Stress=inf", "Adapt->Meshes=nested", "Adapt->Target Relative Error=0.55"},
-      {"Contact->Yield Stress=6", "Body Force->X=2", "Mesh->Cells={5, 3, 3}", "Mesh->Element=Q1"}};
+      {"Contact->Yield Stress=6", "Body Force->X=2", "Mesh->Cells={5, 3, 3}", "Mesh->Element=Q1"},
+      {"Contact->Yield Stress=2", "Body Force->X=2", "Mesh->Cells={3, 2, 2}", "Contact->Friction Bound=0.3",
+       "Mesh->Element=P2"}};
   for (const auto &scene : scenes) {
     SCOPED_TRACE(scene.back());
     auto deck = scene;

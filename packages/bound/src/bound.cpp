@@ -21,7 +21,7 @@ namespace
 
 constexpr const char *covered =
     "\"Adapt->Error Bound\" = guaranteed covers plane strain and plane stress of straight triangles or parallelograms, "
-    "and tetrahedra and hexahedra of order 1, on foundations whose law is the same all along a side";
+    "straight tetrahedra, and hexahedra of order 1, on foundations whose law is the same all along a side";
 
 void require_of_deck(const bool condition, const std::string &what)
 {

@@ -3,6 +3,7 @@
 
 #include "unit_press.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace rpc::bound
@@ -45,8 +46,19 @@ Missed missed(const ContactFacets &c, const std::size_t f, const IsCut &is_cut)
 template <class IsCut>
 Missed missed(const SpaceContact &c, const std::size_t f, const IsCut &is_cut)
 {
+  const auto &corner = c.corner[f];
+  const int nodes = nodes_of_triangle(c.order);
+  OfTriangle cut{};
+  for (int v = 0; v < 3; ++v) cut[v] = is_cut(corner[v]);
+  for (int m = 3; m < nodes; ++m) {
+    const Point &a = corner[m == 4 ? 1 : 0], &b = corner[m == 3 ? 1 : 2];
+    cut[m] = is_cut({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2});
+  }
   Missed of;
-  for (const Point &corner : c.corner[f]) of.positive += is_cut(corner) / 3.;
+  for (const double b : bernstein_of(c.order, cut)) {
+    of.positive += std::max(0., b) / nodes;
+    of.negative += std::max(0., -b) / nodes;
+  }
   return of;
 }
 

@@ -22,7 +22,7 @@ void take_areas_of_halves(SpaceContact &c)
 {
   std::vector<double> area(c.points.size(), 0.);
   for (std::size_t e = 0; e < c.point.size(); ++e)
-    for (const int p : c.point[e]) area[p] += c.area[e] / 3;
+    for (int v = 0; v < 3; ++v) area[c.point[e][v]] += c.area[e] / 3;
   for (std::size_t i = 0; i < area.size(); ++i) {
     c.force[i] = area[i] * c.points[i].pressure;
     for (int k = 0; k < 2; ++k) c.friction.force[k][i] = area[i] * c.friction.traction[i][k];

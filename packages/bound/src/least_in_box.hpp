@@ -29,7 +29,7 @@ template <class Fit>
 std::vector<double> least_in_box(const Fit &fit)
 {
   // Squares of what may be left of the gradient, over that of f, over what was left at a look, and over the first one; all scaled.
-  constexpr double enough = 1e-26, enough_after_look = 1e-10, enough_of_first = 1e-22;
+  constexpr double enough = 1e-26, enough_after_look = 1e-10, enough_of_first = 1e-26;
   const std::vector<double> &scale = fit.scale();
   const std::size_t n = scale.size();
   std::vector<double> x(n), g(n), y(n), Hy(n), free(n), chopped(n), scaled(n), lower(n), upper(n);

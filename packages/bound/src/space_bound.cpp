@@ -36,14 +36,17 @@ std::string not_covered_in_space(const analysis::Problem &problem, const analysi
 {
   const fem::Discretization &d = problem.discretization();
   const analysis::Model model = problem.model().seen_at(step.time);
-  if (d.mesh->element.order != 1)
-    return "in space it covers elements of order 1, and the cells are " + d.mesh->element.name() +
-           "; \"Mesh->Element\" = P1 or Q1 is covered";
-  if (d.mesh->element.shape != mesh::Shape::simplex) return not_covered_of_hexahedra(problem, step, facets);
+  const mesh::Element &element = d.mesh->element;
+  if (element.shape != mesh::Shape::simplex && element.order != 1)
+    return "in space it covers tetrahedra and hexahedra of order 1, and the cells are " + element.name() +
+           "; \"Mesh->Element\" = P1, P2 or Q1 is covered";
+  if (element.shape != mesh::Shape::simplex) return not_covered_of_hexahedra(problem, step, facets);
   facets = std::make_shared<SpaceFacets>(space_facets_of(d));
   return_freed_memory();
-  boundary_of(d, model, step, space_input(d, model, *facets),
-              {HostView<double *>("rpc::bound::none", step.contact.size()), {}});
+  const SpaceInput in = space_input(d, model, *facets);
+  const double distortion = max_all(d.mesh->comm(), largest_distortion(in, element));
+  if (!(distortion <= 1e-9)) return "cells are curved (by " + shown(distortion) + " of an edge)";
+  boundary_of(d, model, step, in, {HostView<double *>("rpc::bound::none", step.contact.size()), {}});
   return "";
 }
 

@@ -40,28 +40,34 @@ std::vector<std::vector<double>> values_of(const FacetPolynomials &polynomials, 
 }
 
 /// Whether a prescribed displacement between the nodes is what the elements make of it there.
-void require_linear_displacement(const ScalarField &field, const SpaceFacetsOnHost &host, const std::vector<LO> &facets,
-                                 const bool hexahedra, const std::string &name)
+void require_represented_displacement(const ScalarField &field, const SpaceFacetsOnHost &host,
+                                      const std::vector<LO> &facets, const bool hexahedra, const std::string &name)
 {
   if (field.is_constant()) return;
+  const int order = hexahedra ? 1 : host.mesh.element.order, nodes = nodes_of_triangle(order);
+  const std::array<Barycentric, 6> at_nodes{
+      {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}}};
   FacetRule rule = facet_rule(3, 4);
-  rule.point.insert(rule.point.begin(), {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
-  rule.weight.insert(rule.weight.begin(), 3, 0.);
+  rule.point.insert(rule.point.begin(), at_nodes.begin(), at_nodes.begin() + nodes);
+  rule.weight.insert(rule.weight.begin(), nodes, 0.);
   const HostView<double **> x = host.points(facets, rule);
   const auto u = evaluate(field, x, "Dirichlet->" + name, host.mesh.comm());
   double largest = 0, off_most = 0;
   Point where{};
-  for (std::size_t e = 0; e < facets.size(); ++e)
+  for (std::size_t e = 0; e < facets.size(); ++e) {
+    const std::size_t first = e * rule.size();
+    OfTriangle of_nodes{};
+    for (int a = 0; a < nodes; ++a) of_nodes[a] = u(first + a);
+    const OfTriangle there = bernstein_of(order, of_nodes);
     for (int q = 0; q < rule.size(); ++q) {
-      const std::size_t first = e * rule.size();
-      double off = u(first + q);
-      largest = std::max(largest, std::abs(off));
-      for (int v = 0; v < 3; ++v) off -= rule.point[q][v] * u(first + v);
+      largest = std::max(largest, std::abs(u(first + q)));
+      const double off = u(first + q) - value_of(order, there, rule.point[q]);
       if (std::abs(off) > off_most) {
         off_most = std::abs(off);
         for (int d = 0; d < 3; ++d) where[d] = x(first + q, d);
       }
     }
+  }
   const WorstInSpace worst = worst_in_space(host.mesh.comm(), off_most, largest, where);
   RPC_REQUIRE(worst.off <= 1e-10,
               covers << (hexahedra ? "displacements of sides of hexahedra that are linear on each triangle that their "
@@ -133,7 +139,7 @@ SpaceBoundary boundary_of(const fem::Discretization &d, const analysis::Model &m
     const std::vector<LO> of_side = host.facets_of(*side);
     for (int i = 0; i < 3; ++i) {
       if (!condition.displacement[i]) continue;
-      require_linear_displacement(*condition.displacement[i], host, of_side, in.of_hexahedra, condition.name);
+      require_represented_displacement(*condition.displacement[i], host, of_side, in.of_hexahedra, condition.name);
       for (const LO f : of_side) prescribed(f, i) = 1;
     }
   }
@@ -175,19 +181,20 @@ BoundaryTractions with_contact(const SpaceInput &in, const SpaceBoundary &bounda
   all.load = DeviceView<double ***>("rpc::bound::load", loads.load.extent(0), loads.load.extent(1), 3);
   const auto load = Kokkos::create_mirror_view(all.load);
   Kokkos::deep_copy(load, loads.load);
-  const auto linear = to_host(in.tables.linear);
+  const auto bernstein = to_host(in.tables.bernstein);
+  const int n = nodes_of_triangle(in.reference.degree);
   for (std::size_t s = 0; s < boundary.sides.size(); ++s) {
     const SpaceContact &c = boundary.sides[s];
     for (std::size_t e = 0; e < c.facet.size(); ++e) {
       if (c.facet[e] < 0) continue;
       for (int i = 0; i < 3; ++i) {
         OfTriangle t{}; // on the foundation
-        for (int v = 0; v < 3; ++v) {
+        for (int v = 0; v < n; ++v) {
           t[v] = c.normal[i] * contact[s].pressure[e][v];
           for (int k = 0; k < 2 && c.friction.acts; ++k) t[v] += c.axis[k][i] * contact[s].friction[k][e][v];
         }
-        for (int j = 0; j < 3; ++j)
-          for (int v = 0; v < 3; ++v) load(c.facet[e], j, i) -= c.area[e] * linear(j, v) * t[v];
+        for (int j = 0; j < n; ++j)
+          for (int v = 0; v < n; ++v) load(c.facet[e], j, i) -= c.area[e] * bernstein(j, v) * t[v];
       }
     }
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "space_contact.hpp"
 
+#include "facet_polynomials.hpp"
 #include "rpc/contact/law/foundation.hpp"
 #include "space_traction_fit.hpp"
 
@@ -73,12 +74,154 @@ private:
   std::vector<std::vector<Corner>> parts_{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 };
 
-OfTriangle plus(const OfTriangle &x, const double a, const OfTriangle &y)
+OfTriangle plus(OfTriangle x, const double a, const OfTriangle &y)
 {
-  return {x[0] + a * y[0], x[1] + a * y[1], x[2] + a * y[2]};
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += a * y[i];
+  return x;
 }
 
+/// Both ends of the sides 01, 12, 02.
+constexpr std::array<int, 2> ends_of(const int side)
+{
+  return {side == 1 ? 1 : 0, side == 0 ? 1 : 2};
+}
+
+/// Powers of the barycentric coordinates in a Bernstein polynomial.
+std::array<int, 3> powers(const int order, const int i)
+{
+  std::array<int, 3> a{};
+  if (i < 3)
+    a[i] = order;
+  else
+    for (const int v : ends_of(i - 3)) a[v] = 1;
+  return a;
+}
+
+/// The part of a triangle between three places.
+using Part = std::array<Corner, 3>;
+
+/// The coefficients on a part.
+OfTriangle on_part(const int order, const OfTriangle &b, const Part &part)
+{
+  OfTriangle of{};
+  if (order == 1) {
+    for (int v = 0; v < 3; ++v) of[v] = value_at(b, part[v]);
+    return of;
+  }
+  const auto blossom = [&](const Corner &x, const Corner &y) {
+    double sum = x[0] * y[0] * b[0] + x[1] * y[1] * b[1] + x[2] * y[2] * b[2];
+    for (int m = 0; m < 3; ++m) {
+      const auto [i, j] = ends_of(m);
+      sum += (x[i] * y[j] + x[j] * y[i]) * b[3 + m];
+    }
+    return sum;
+  };
+  for (int v = 0; v < 3; ++v) of[v] = blossom(part[v], part[v]);
+  for (int m = 0; m < 3; ++m) of[3 + m] = blossom(part[ends_of(m)[0]], part[ends_of(m)[1]]);
+  return of;
+}
+
+Corner between(const Corner &x, const Corner &y)
+{
+  return {(x[0] + y[0]) / 2, (x[1] + y[1]) / 2, (x[2] + y[2]) / 2};
+}
+
+bool changes_sign(const OfTriangle &b)
+{
+  return *std::min_element(b.begin(), b.end()) < 0 && *std::max_element(b.begin(), b.end()) > 0;
+}
+
+/// The integrals of order 2. Where roots cross a part it is divided; in the last ones psi, which is convex in v and grows with xi, counts as
+/// the mean of its values at the coefficients of v with the largest xi, and psi* likewise with the least one.
+class Quadratic
+{
+public:
+  Quadratic(const OfTriangle &v, const OfTriangle &p, const TriangleLaw &law)
+      : v_(v), p_(p), law_(law), rigid_(contact::is_rigid(*std::max_element(law.limit.begin(), law.limit.end())))
+  {
+  }
+  ContactIntegrals integrated()
+  {
+    add({{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, 1, 0);
+    return sum_;
+  }
+
+private:
+  void add(const Part &part, const double size, const int depth)
+  {
+    constexpr int deepest = 5; // what is left of an error of parts of 1 is (1/4)^5
+    const OfTriangle v = on_part(2, v_, part), p = on_part(2, p_, part),
+                     limit = rigid_ ? law_.limit : on_part(2, law_.limit, part);
+    const bool changes = changes_sign(v) ||
+                         (!rigid_ && (changes_sign(plus(v, -law_.spring, limit)) || changes_sign(plus(p, -1, limit))));
+    if (!changes) {
+      static const FacetRule rule = facet_rule(3, 3); // polynomials of degree 4
+      for (int q = 0; q < rule.size(); ++q)
+        sum_.add(size * rule.weight[q], value_of(2, v, rule.point[q]), std::max(0., value_of(2, p, rule.point[q])),
+                 {rigid_ ? limit[0] : value_of(2, limit, rule.point[q]), law_.rise, law_.spring},
+                 rigid_ && law_.spring == 0);
+      return;
+    }
+    if (depth < deepest) {
+      const Corner middle[3] = {between(part[0], part[1]), between(part[1], part[2]), between(part[0], part[2])};
+      for (const Part &quarter : {Part{part[0], middle[0], middle[2]}, Part{middle[0], part[1], middle[1]},
+                                  Part{middle[2], middle[1], part[2]}, Part{middle[0], middle[1], middle[2]}})
+        add(quarter, size / 4, depth + 1);
+      return;
+    }
+    const double most = *std::max_element(limit.begin(), limit.end()),
+                 least = *std::min_element(limit.begin(), limit.end());
+    double energy = 0, conjugate = 0, work = 0;
+    for (int i = 0; i < 6; ++i) {
+      energy += contact::foundation_energy(v[i], {most, law_.rise, law_.spring}) / 6;
+      conjugate += contact::conjugate_energy(std::max(0., p[i]), {least, law_.rise, law_.spring}) / 6;
+      for (int j = 0; j < 6; ++j) work += mean_product(2, i, j) * p[i] * v[j];
+    }
+    sum_.energy += size * energy;
+    sum_.gap += size * std::max(0., energy + conjugate - work);
+  }
+
+  OfTriangle v_, p_;
+  TriangleLaw law_;
+  bool rigid_;
+  ContactIntegrals sum_;
+};
+
 } // namespace
+
+OfTriangle bernstein_of(const int order, const OfTriangle &at_nodes)
+{
+  OfTriangle b = at_nodes;
+  for (int m = 0; order == 2 && m < 3; ++m)
+    b[3 + m] = 2 * at_nodes[3 + m] - (at_nodes[ends_of(m)[0]] + at_nodes[ends_of(m)[1]]) / 2;
+  return b;
+}
+
+double value_of(const int order, const OfTriangle &bernstein, const std::array<double, 3> &at)
+{
+  if (order == 1) return value_at(bernstein, at);
+  double sum = 0;
+  for (int v = 0; v < 3; ++v) sum += bernstein[v] * at[v] * at[v];
+  for (int m = 0; m < 3; ++m) sum += bernstein[3 + m] * 2 * at[ends_of(m)[0]] * at[ends_of(m)[1]];
+  return sum;
+}
+
+double mean_product(const int order, const int i, const int j)
+{
+  constexpr int choose[5][3] = {{1, 0, 0}, {1, 1, 0}, {1, 2, 1}, {1, 3, 3}, {1, 4, 6}};
+  const std::array<int, 3> a = powers(order, i), b = powers(order, j);
+  double product = 1;
+  for (int v = 0; v < 3; ++v) product *= choose[a[v] + b[v]][std::min(a[v], b[v])];
+  return product / (order == 1 ? 12 : 90);
+}
+
+OfTriangle through_middles(const OfTriangle &at_nodes)
+{
+  OfTriangle of = at_nodes;
+  const double sum = at_nodes[3] + at_nodes[4] + at_nodes[5];
+  for (int v = 0; v < 3; ++v) of[v] = sum - 2 * at_nodes[v == 0 ? 4 : (v == 1 ? 5 : 3)];
+  return of;
+}
 
 std::vector<OfTriangle> fitted_pressure(const SpaceContact &c, const std::vector<OfTriangle> &v)
 {
@@ -91,7 +234,7 @@ std::vector<OfTriangle> fitted_pressure(const SpaceContact &c, const std::vector
   wanted.rise = c.rise;
   for (std::size_t e = 0; e < c.facet.size(); ++e) {
     OfTriangle near = c.pressure[e];
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < nodes_of_triangle(c.order); ++i)
       near[i] = std::clamp(near[i], 0., c.rise > 0 ? std::numeric_limits<double>::infinity() : c.limit_of[e][i]);
     wanted.near[0].push_back(near);
     wanted.low[0].push_back({});
@@ -111,11 +254,16 @@ AlongSide fitted_friction(const SpaceContact &c, const AlongSide &slip)
     wanted.toward.emplace_back();
     for (auto *const side : {&wanted.near, &wanted.low, &wanted.high})
       for (auto &component : *side) component.push_back({});
-    for (int a = 0; a < 3; ++a) {
+    std::array<OfTriangle, 2> traction{};
+    for (int k = 0; k < 2; ++k) {
+      for (int a = 0; a < nodes_of_triangle(c.order); ++a) traction[k][a] = f.traction[c.point[e][a]][k];
+      if (c.order == 2) traction[k] = through_middles(traction[k]);
+    }
+    for (int a = 0; a < nodes_of_triangle(c.order); ++a) {
       // Limits are discs. Of one the box has the traction of the node in it and touches the circle with its corners: along a traction that has
       // reached the limit it is a line.
       const double s = f.limit_of[e][a];
-      std::array<double, 2> q = f.traction[c.point[e][a]], toward{1, 0};
+      std::array<double, 2> q = {traction[0][a], traction[1][a]}, toward{1, 0};
       const double size = std::hypot(q[0], q[1]), slipped = std::hypot(slip[0][e][a], slip[1][e][a]);
       if (size > 0)
         toward = {q[0] / size, q[1] / size};
@@ -136,8 +284,9 @@ AlongSide fitted_friction(const SpaceContact &c, const AlongSide &slip)
   return fitted_in_space(c, wanted);
 }
 
-ContactIntegrals contact_integrals(const OfTriangle &v, const OfTriangle &p, const TriangleLaw &law)
+ContactIntegrals contact_integrals(const int order, const OfTriangle &v, const OfTriangle &p, const TriangleLaw &law)
 {
+  if (order == 2) return Quadratic(v, p, law).integrated();
   const bool rigid = contact::is_rigid(*std::max_element(law.limit.begin(), law.limit.end()));
   PartsOfTriangle parts; // within which the integrands are polynomials of degree 2
   parts.end_at_roots_of(v);
@@ -154,26 +303,29 @@ ContactIntegrals contact_integrals(const OfTriangle &v, const OfTriangle &p, con
   return sum;
 }
 
-ContactIntegrals friction_integrals(const std::array<OfTriangle, 2> &slip, const std::array<OfTriangle, 2> &traction,
-                                    const OfTriangle &limit)
+ContactIntegrals friction_integrals(const int order, const std::array<OfTriangle, 2> &slip,
+                                    const std::array<OfTriangle, 2> &traction, const OfTriangle &limit)
 {
   constexpr int parts = 8; // along each side
-  const auto length_at = [&](const Corner &x) { return std::hypot(value_at(slip[0], x), value_at(slip[1], x)); };
-  ContactIntegrals sum;
-  const auto product = [](const OfTriangle &x, const OfTriangle &y) { // the mean
-    return ((x[0] + x[1] + x[2]) * (y[0] + y[1] + y[2]) + x[0] * y[0] + x[1] * y[1] + x[2] * y[2]) / 12;
+  const int n = nodes_of_triangle(order);
+  const auto product = [&](const OfTriangle &x, const OfTriangle &y) { // the mean
+    double sum = 0;
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) sum += mean_product(order, i, j) * x[i] * y[j];
+    return sum;
   };
+  ContactIntegrals sum;
   for (int i = 0; i < parts; ++i)
     for (int j = 0; i + j < parts; ++j)
       for (int flipped = 0; flipped < 2 && i + j + flipped < parts; ++flipped) {
         const int at[3][2] = {{i + flipped, j + flipped}, {i + 1, j}, {i, j + 1}};
-        OfTriangle size{}, s{};
-        for (int v = 0; v < 3; ++v) {
-          const Corner x{1 - double(at[v][0] + at[v][1]) / parts, double(at[v][0]) / parts, double(at[v][1]) / parts};
-          size[v] = length_at(x);
-          s[v] = value_at(limit, x);
-        }
-        sum.energy += product(size, s) / (parts * parts);
+        Part part{};
+        for (int v = 0; v < 3; ++v)
+          part[v] = {1 - double(at[v][0] + at[v][1]) / parts, double(at[v][0]) / parts, double(at[v][1]) / parts};
+        const OfTriangle x = on_part(order, slip[0], part), y = on_part(order, slip[1], part);
+        OfTriangle size{};
+        for (int v = 0; v < n; ++v) size[v] = std::hypot(x[v], y[v]);
+        sum.energy += product(size, on_part(order, limit, part)) / (parts * parts);
       }
   sum.gap = std::max(0., sum.energy - product(slip[0], traction[0]) - product(slip[1], traction[1]));
   return sum;

@@ -22,8 +22,9 @@ std::string not_covered_of_side(const contact::ContactOptions &options, const st
 }
 
 /// Whether the gap between the nodes is what the elements make of it there.
-void require_linear_gap(const contact::ContactOptions &options, const Comm &comm, const SpaceContact &c,
-                        const std::vector<OfTriangle> &gap)
+/// @param gap  (facets) Bernstein coefficients
+void require_represented_gap_in_space(const contact::ContactOptions &options, const Comm &comm, const SpaceContact &c,
+                                      const std::vector<OfTriangle> &gap)
 {
   const FacetRule rule = facet_rule(3, 4);
   const HostView<double **> x("rpc::bound::points", c.corner.size() * rule.size(), 3);
@@ -36,7 +37,7 @@ void require_linear_gap(const contact::ContactOptions &options, const Comm &comm
   for (std::size_t e = 0; e < c.corner.size(); ++e)
     for (int q = 0; q < rule.size(); ++q) {
       const Barycentric &lambda = rule.point[q];
-      const double here = gap[e][0] * lambda[0] + gap[e][1] * lambda[1] + gap[e][2] * lambda[2];
+      const double here = value_of(c.order, gap[e], lambda);
       const std::size_t at = e * rule.size() + q;
       const Point place{x(at, 0), x(at, 1), x(at, 2)};
       const auto distance = options.obstacle.exists() ? contact::distance_along(options.obstacle, place, c.normal)
@@ -63,7 +64,7 @@ std::array<Point, 2> axes_across(const Point &normal)
 
 /// A facet of a side, for all ranks.
 struct SpaceSideFacet {
-  double gid[3];       // of its vertices in their order
+  double gid[6];       // of its nodes in their order
   double corner[3][3]; // [m]
   double block, modulus, prescribed;
 };
@@ -79,10 +80,10 @@ std::vector<SpaceSideFacet> own_side_facets(const fem::Discretization &discretiz
     const LO cell = host.cell(f, 0);
     if (cell < 0 || cell >= host.mesh.num_owned_cells) continue;
     SpaceSideFacet s{};
-    for (int v = 0; v < 3; ++v) {
-      s.gid[v] = static_cast<double>(host.mesh.node_gid(host.node(f, v)));
+    for (std::size_t a = 0; a < host.node.extent(1); ++a)
+      s.gid[a] = static_cast<double>(host.mesh.node_gid(host.node(f, a)));
+    for (int v = 0; v < 3; ++v)
       for (int d = 0; d < 3; ++d) s.corner[v][d] = host.coords(host.node(f, v), d);
-    }
     s.block = block(cell);
     const double lambda = lame(block(cell), 0), mu = lame(block(cell), 1);
     s.modulus = mu * (3 * lambda + 2 * mu) / (lambda + mu);
@@ -93,9 +94,12 @@ std::vector<SpaceSideFacet> own_side_facets(const fem::Discretization &discretiz
 }
 
 /// The numbers of this rank's points of a side.
-std::vector<SpacePoint> own_side_points(const contact::ContactNodes &points, const int k, const SpaceFacetsOnHost &host,
+/// A vertex of quadratic triangles has no weight, and so no direction in the solution; here it has one, and may be held.
+std::vector<SpacePoint> own_side_points(const analysis::Step &step, const int k, const SpaceFacetsOnHost &host,
                                         const PointTractions &solution)
 {
+  const contact::ContactNodes &points = step.contact;
+  const auto held = to_host(step.elastic.dirichlet.fixed);
   const auto node = to_host(points.node);
   const auto weight = to_host(points.weight), gap = to_host(points.gap), dent = to_host(points.dent);
   const auto free_gap = to_host(points.free_gap);
@@ -110,6 +114,7 @@ std::vector<SpacePoint> own_side_points(const contact::ContactNodes &points, con
     p.gid = static_cast<double>(host.mesh.node_gid(node(i)));
     p.id = static_cast<double>(host.mesh.node_id(node(i)));
     p.weight = weight(i);
+    const bool is_vertex = host.mesh.element.order == 2 && p.weight == 0;
     p.pressure = solution.pressure(i);
     p.gap = gap(i);
     p.dent = dent(i);
@@ -120,8 +125,13 @@ std::vector<SpacePoint> own_side_points(const contact::ContactNodes &points, con
       p.place[d] = host.coords(node(i), d);
       p.normal[d] = normal(i, d);
       p.direction[d] = direction(i, d);
+      if (is_vertex) p.direction[d] = held(dof(3, node(i), d)) ? 0 : p.normal[d];
       if (rubs) p.slip_from[d] = from(i, d);
       if (solution.along.extent(0) > 0) p.friction[d] = solution.along(i, d);
+    }
+    if (is_vertex) {
+      p.fixed = p.direction[0] == 0 && p.direction[1] == 0 && p.direction[2] == 0;
+      p.acts = rubs && p.fixed == 0;
     }
     all.push_back(p);
   }
@@ -145,12 +155,12 @@ void add_points(const contact::ContactOptions &options, SpaceContact &c)
       RPC_REQUIRE(std::abs(p.normal[d] - c.normal[d]) <= 1e-10, not_covered_of_side(options, "its normals differ"));
     RPC_REQUIRE(p.fixed != 0 || std::abs(p.direction[0]) + std::abs(p.direction[1]) + std::abs(p.direction[2]) > 0,
                 not_covered_of_side(options, "a node has no direction"));
-    c.free.push_back(p.fixed == 0 && p.weight > 0);
+    c.free.push_back(p.fixed == 0 && (p.weight > 0 || c.order == 2));
     c.force.push_back(p.weight * p.pressure);
     c.place.push_back(along_axes(c, p.place));
     c.friction.traction.push_back(along_axes(c, p.friction));
     c.friction.slip_from.push_back(along_axes(c, p.slip_from));
-    c.friction.free.push_back(p.acts != 0 && p.weight > 0);
+    c.friction.free.push_back(p.acts != 0 && (p.weight > 0 || c.order == 2));
     for (int k = 0; k < 2; ++k) c.friction.force[k].push_back(p.weight * c.friction.traction.back()[k]);
   }
 }
@@ -160,7 +170,7 @@ OfTriangle friction_limit(const contact::ContactOptions &options, const OfTriang
 {
   const contact::Friction friction{law(options, 3), law(options, 4), law(options, 5)};
   OfTriangle s{};
-  for (int a = 0; a < 3; ++a)
+  for (std::size_t a = 0; a < s.size(); ++a)
     s[a] = std::clamp(contact::friction_bound(pressure[a], friction), 0., std::max(0., friction.limit));
   return s;
 }
@@ -179,13 +189,14 @@ SpaceContact space_side(const fem::Discretization &discretization, const analysi
   const contact::ContactOptions &options = model.contact[k];
   const Comm &comm = host.mesh.comm();
   SpaceContact c;
+  c.order = host.mesh.element.order;
   c.rise = law(options, 1);
   c.spring = 1 / law(options, 2);
   c.friction.acts = options.has_friction() && step.contact.friction.anywhere;
   const std::vector<LO> local = host.facets_of(host.mesh.side(options.side, options.path));
   std::vector<SpaceSideFacet> facets =
       rows_of_all(comm, own_side_facets(discretization, model, host, local, prescribed));
-  c.points = rows_of_all(comm, own_side_points(step.contact, k, host, solution));
+  c.points = rows_of_all(comm, own_side_points(step, k, host, solution));
   if (facets.empty()) return c;
   RPC_REQUIRE(!c.points.empty(), not_covered_of_side(options, "the normal misses the foundation in a node"));
   std::sort(c.points.begin(), c.points.end(), [](const SpacePoint &a, const SpacePoint &b) { return a.id < b.id; });
@@ -198,10 +209,11 @@ SpaceContact space_side(const fem::Discretization &discretization, const analysi
     for (int v = 0; v < 3; ++v) gid[v] = static_cast<double>(host.mesh.node_gid(host.node(f, v)));
     local_at[gid] = f;
   }
-  std::map<std::array<int, 3>, SpaceSideFacet> in_order; // by their points
+  const int nodes = nodes_of_triangle(c.order);
+  std::map<std::array<int, 6>, SpaceSideFacet> in_order; // by their points
   for (const SpaceSideFacet &s : facets) {
-    std::array<int, 3> of_facet{};
-    for (int a = 0; a < 3; ++a) {
+    std::array<int, 6> of_facet{};
+    for (int a = 0; a < nodes; ++a) {
       const auto found = point_at.find(s.gid[a]);
       RPC_REQUIRE(found != point_at.end(), not_covered_of_side(options, "the normal misses the foundation in a node"));
       of_facet[a] = found->second;
@@ -216,14 +228,18 @@ SpaceContact space_side(const fem::Discretization &discretization, const analysi
     RPC_REQUIRE(s.prescribed == 0, not_covered_of_side(options, "displacements are prescribed on it too"));
     std::array<Point, 3> corner{};
     OfTriangle g{}, p{}, limit{};
-    for (int a = 0; a < 3; ++a) {
+    for (int v = 0; v < 3; ++v)
+      for (int d = 0; d < 3; ++d) corner[v][d] = s.corner[v][d];
+    for (int a = 0; a < nodes; ++a) {
       const SpacePoint &point = c.points[of_facet[a]];
-      for (int d = 0; d < 3; ++d) corner[a][d] = s.corner[a][d];
       g[a] = point.gap;
       p[a] = point.pressure;
       limit[a] = c.rise > 0 && !contact::is_rigid(xi) ? xi + c.rise * point.dent : xi;
       blocks_at[of_facet[a]].insert(s.block);
     }
+    if (c.order == 2) p = through_middles(p);
+    if (!contact::is_rigid(xi)) limit = bernstein_of(c.order, limit);
+    for (double &of_limit : limit) of_limit = std::max(0., of_limit);
     const Point n = cross(difference(corner[1], corner[0]), difference(corner[2], corner[0]));
     c.area.push_back(length(n) / 2);
     if (c.area.size() == 1) across = scaled(1 / length(n), n);
@@ -237,7 +253,7 @@ SpaceContact space_side(const fem::Discretization &discretization, const analysi
     c.limit_of.push_back(limit);
     c.friction.limit_of.push_back(friction_limit(options, p));
     c.modulus = s.modulus;
-    gaps.push_back(g);
+    gaps.push_back(bernstein_of(c.order, g));
   }
   // Where materials meet pressures jump, and a node has a mean; where the node is held it has none.
   for (std::size_t e = 0; e < c.facet.size(); ++e) {
@@ -245,17 +261,19 @@ SpaceContact space_side(const fem::Discretization &discretization, const analysi
       const int i = c.point[e][a];
       return c.free[i] && blocks_at[i].size() == 1;
     };
+    const int from = c.order == 1 ? 0 : 3; // where the nodes with weight are
     double sum = 0;
     int known = 0;
-    for (int a = 0; a < 3; ++a)
+    for (int a = from; a < nodes; ++a)
       if (is_own(a)) {
         sum += c.pressure[e][a];
         ++known;
       }
-    for (int a = 0; a < 3 && known > 0; ++a)
+    for (int a = from; a < nodes && known > 0; ++a)
       if (!is_own(a)) c.pressure[e][a] = sum / known;
+    if (c.order == 2) c.pressure[e] = through_middles(c.pressure[e]);
   }
-  require_linear_gap(options, comm, c, gaps);
+  require_represented_gap_in_space(options, comm, c, gaps);
   return c;
 }
 

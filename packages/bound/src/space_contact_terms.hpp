@@ -11,7 +11,7 @@
 namespace rpc::bound
 {
 
-/// Tractions of contact on the facets of a side, at the corners [Pa].
+/// Tractions of contact on the facets of a side [Pa].
 struct SpaceTractions {
   std::vector<OfTriangle> pressure;
   AlongSide friction; ///< empty where there is none

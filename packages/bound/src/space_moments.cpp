@@ -3,6 +3,7 @@
 
 #include "dense.hpp"
 #include "facet_polynomials.hpp"
+#include "space_contact.hpp"
 
 #include <algorithm>
 #include <array>
@@ -152,14 +153,21 @@ FacetTables facet_tables(const int order)
   FacetTables t;
   t.moment = DeviceView<double **>("rpc::bound::moment", n, n);
   t.from_moments = DeviceView<double **>("rpc::bound::from_moments", n, n);
+  t.bernstein = DeviceView<double **>("rpc::bound::bernstein", n, n);
   t.linear = DeviceView<double **>("rpc::bound::linear", 3, 3);
   t.shape = DeviceView<double **>("rpc::bound::shape", points.size(), n);
   const auto means = Kokkos::create_mirror_view(t.moment), inverse = Kokkos::create_mirror_view(t.from_moments),
-             linear = Kokkos::create_mirror_view(t.linear), values = Kokkos::create_mirror_view(t.shape);
+             linear = Kokkos::create_mirror_view(t.linear), bernstein = Kokkos::create_mirror_view(t.bernstein),
+             values = Kokkos::create_mirror_view(t.shape);
   for (int q = 0; q < rule.size(); ++q)
     for (int j = 0; j < n; ++j) {
       const double weighted = rule.weight[q] * polynomials(j, rule.point[q]);
-      for (int a = 0; a < n; ++a) moment(j, a) += weighted * shape(a, rule.point[q]);
+      for (int a = 0; a < n; ++a) {
+        OfTriangle own{};
+        own[a] = 1;
+        bernstein(j, a) += weighted * value_of(order, own, rule.point[q]);
+        moment(j, a) += weighted * shape(a, rule.point[q]);
+      }
       for (int v = 0; v < 3 && j < 3; ++v) linear(j, v) += weighted * rule.point[q][v];
     }
   back = kernel_of(transposed(moment)).inverse; // of moments m_a = sum_j moment(j, a) t_j
@@ -173,6 +181,7 @@ FacetTables facet_tables(const int order)
   Kokkos::deep_copy(t.moment, means);
   Kokkos::deep_copy(t.from_moments, inverse);
   Kokkos::deep_copy(t.linear, linear);
+  Kokkos::deep_copy(t.bernstein, bernstein);
   Kokkos::deep_copy(t.shape, values);
   return t;
 }

@@ -25,8 +25,9 @@ struct FacetTables {
   DeviceView<double **> moment; ///< (polynomials, nodes) means of the products
   DeviceView<double **>
       from_moments; ///< (polynomials, nodes) the coefficients that moments with the nodes' functions belong to
-  DeviceView<double **> linear; ///< (3 polynomials, vertices) coefficients of the barycentric coordinates
-  DeviceView<double **> shape;  ///< (points of facet_rule(3, 3), nodes)
+  DeviceView<double **> linear;    ///< (3 polynomials, vertices) coefficients of the barycentric coordinates
+  DeviceView<double **> bernstein; ///< (polynomials, nodes) coefficients of Bernstein polynomials of the order
+  DeviceView<double **> shape;     ///< (points of facet_rule(3, 3), nodes)
 };
 FacetTables facet_tables(int order);
 

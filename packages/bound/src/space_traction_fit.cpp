@@ -12,34 +12,39 @@ namespace rpc::bound
 namespace
 {
 
-/// Means over a triangle of the products of two of its barycentric coordinates.
-constexpr double mean_product(const int i, const int j)
-{
-  return i == j ? 1. / 6 : 1. / 12;
-}
-
-/// The quadratic function of the fit: x . H x/2 - f . x. The unknowns are the tractions at the corners of facets, component by component; of a
+/// The quadratic function of the fit: x . H x/2 - f . x. The unknowns are the coefficients of tractions on facets, component by component; of a
 /// pressure with hardening once more as many, by which these exceed the yield limit.
 class FitInSpace
 {
 public:
-  FitInSpace(const SpaceContact &c, const WantedInSpace &w) : c_(c), w_(w), corners_(3 * c.facet.size())
+  FitInSpace(const SpaceContact &c, const WantedInSpace &w)
+      : c_(c), w_(w), n_(nodes_of_triangle(c.order)), unknowns_(n_ * c.facet.size())
   {
+    for (int a = 0; a < n_; ++a) {
+      OfTriangle at_nodes{};
+      at_nodes[a] = 1;
+      const OfTriangle shape = bernstein_of(c.order, at_nodes);
+      for (int j = 0; j < n_; ++j) {
+        mass_[a][j] = mean_product(c.order, a, j);
+        for (int i = 0; i < n_; ++i) forces_[a][j] += shape[i] * mean_product(c.order, i, j);
+      }
+    }
     double area = 0;
     for (const double a : c.area) area += a;
     size_ = std::sqrt(2 * area / static_cast<double>(c.area.size()));
     list_hats();
     const std::size_t blocks = w.components == 2 || w.rise > 0 ? 2 : 1;
     for (auto *const of_unknowns : {&f_, &scale_, &start_, &low_bound_, &high_bound_})
-      of_unknowns->assign(blocks * corners_, 0.);
+      of_unknowns->assign(blocks * unknowns_, 0.);
     apply_or_compare(start_, true, f_);
     for (double &f : f_) f = -f;
     Values near;
     for (int k = 0; k < w.components; ++k)
-      for (const OfTriangle &of_facet : w.near[k]) near[k].insert(near[k].end(), of_facet.begin(), of_facet.end());
+      for (const OfTriangle &of_facet : w.near[k])
+        near[k].insert(near[k].end(), of_facet.begin(), of_facet.begin() + n_);
     reduce(near, start_);
     for (std::size_t e = 0; e < c.facet.size(); ++e)
-      for (int i = 0; i < 3; ++i) set_bounds(e, i);
+      for (int i = 0; i < n_; ++i) set_bounds(e, i);
   }
 
   /// y <- H x.
@@ -51,8 +56,10 @@ public:
     const Values t = expanded(x);
     AlongSide all;
     for (int k = 0; k < w_.components; ++k)
-      for (std::size_t e = 0; e < c_.facet.size(); ++e)
-        all[k].push_back({t[k][3 * e], t[k][3 * e + 1], t[k][3 * e + 2]});
+      for (std::size_t e = 0; e < c_.facet.size(); ++e) {
+        all[k].emplace_back();
+        std::copy_n(t[k].begin() + n_ * e, n_, all[k].back().begin());
+      }
     return all;
   }
   const std::vector<double> &right_side() const { return f_; }
@@ -62,7 +69,7 @@ public:
   const std::vector<double> &high() const { return high_bound_; }
 
 private:
-  using Values = std::array<std::vector<double>, 2>; // (components; corners)
+  using Values = std::array<std::vector<double>, 2>; // (components; unknowns)
   /// Of one level: (points) the first of four hats, and what they are there; 0 where nothing can act.
   struct Hats {
     int intervals;
@@ -73,80 +80,93 @@ private:
   bool hardens() const { return w_.rise > 0; }
   void apply_or_compare(const std::vector<double> &x, const bool compare, std::vector<double> &y) const
   {
+    n_ == 3 ? apply_of<3>(x, compare, y) : apply_of<6>(x, compare, y);
+  }
+  /// @tparam N  coefficients of a facet
+  template <int N>
+  void apply_of(const std::vector<double> &x, const bool compare, std::vector<double> &y) const
+  {
     const Values t = expanded(x);
     Values h;
     for (int k = 0; k < w_.components; ++k) {
       std::vector<double> force(w_.force[k].size(), 0.);
       for (std::size_t i = 0; compare && i < force.size(); ++i) force[i] = w_.free[i] ? -w_.force[k][i] : 0;
       for (std::size_t e = 0; e < c_.facet.size(); ++e)
-        for (int a = 0; a < 3; ++a)
-          for (int j = 0; j < 3; ++j)
-            if (w_.free[c_.point[e][a]]) force[c_.point[e][a]] += c_.area[e] * mean_product(a, j) * t[k][3 * e + j];
+        for (int a = 0; a < N; ++a) {
+          double sum = 0;
+          for (int j = 0; j < N; ++j) sum += forces_[a][j] * t[k][N * e + j];
+          force[c_.point[e][a]] += w_.free[c_.point[e][a]] ? c_.area[e] * sum : 0;
+        }
       add_weighted(force);
-      h[k].assign(corners_, 0.);
-      add_transposed(force, h[k]);
-      for (std::size_t e = 0; e < c_.facet.size(); ++e)
-        for (int i = 0; i < 3; ++i)
-          for (int j = 0; j < 3; ++j) {
-            h[k][3 * e + i] += mass_weight(e) * mean_product(i, j) * t[k][3 * e + j];
-            if (compare)
-              h[k][3 * e + i] -=
-                  mean_product(i, j) * (near_weight(e) * w_.near[k][e][j] + c_.area[e] * w_.depth[k][e][j]);
+      h[k].resize(unknowns_);
+      for (std::size_t e = 0; e < c_.facet.size(); ++e) {
+        const double of_mass = mass_weight(e), of_force = c_.area[e] / (c_.modulus * size_);
+        for (int i = 0; i < N; ++i) {
+          double near = 0, mass = 0, sum = 0;
+          for (int a = 0; a < N; ++a) {
+            const int point = c_.point[e][a];
+            sum += forces_[a][i] * (w_.free[point] ? force[point] : 0);
+            mass += mass_[i][a] * t[k][N * e + a];
+            if (compare) near += mass_[i][a] * (near_weight(e) * w_.near[k][e][a] + c_.area[e] * w_.depth[k][e][a]);
           }
+          h[k][N * e + i] = of_force * sum + of_mass * mass - near;
+        }
+      }
     }
     y.assign(x.size(), 0.);
     reduce(h, y);
-    for (std::size_t q = 0; hardens() && q < corners_; ++q) y[corners_ + q] += beyond_weight(q / 3) * x[corners_ + q];
+    for (std::size_t q = 0; hardens() && q < unknowns_; ++q)
+      y[unknowns_ + q] += beyond_weight(q / N) * x[unknowns_ + q];
   }
   /// Tractions from the unknowns.
   Values expanded(const std::vector<double> &x) const
   {
     Values t;
-    for (int k = 0; k < w_.components; ++k) t[k].resize(corners_);
-    for (std::size_t q = 0; q < corners_; ++q) {
+    for (int k = 0; k < w_.components; ++k) t[k].resize(unknowns_);
+    for (std::size_t q = 0; q < unknowns_; ++q) {
       if (w_.components == 1) {
-        t[0][q] = hardens() ? x[q] + x[corners_ + q] : x[q];
+        t[0][q] = hardens() ? x[q] + x[unknowns_ + q] : x[q];
         continue;
       }
-      const auto &d = w_.toward[q / 3][q % 3];
-      t[0][q] = d[0] * x[q] - d[1] * x[corners_ + q];
-      t[1][q] = d[1] * x[q] + d[0] * x[corners_ + q];
+      const auto &d = w_.toward[q / n_][q % n_];
+      t[0][q] = d[0] * x[q] - d[1] * x[unknowns_ + q];
+      t[1][q] = d[1] * x[q] + d[0] * x[unknowns_ + q];
     }
     return t;
   }
   /// The transpose.
   void reduce(const Values &t, std::vector<double> &x) const
   {
-    for (std::size_t q = 0; q < corners_; ++q) {
+    for (std::size_t q = 0; q < unknowns_; ++q) {
       if (w_.components == 1) {
         x[q] = t[0][q];
-        if (hardens()) x[corners_ + q] = t[0][q];
+        if (hardens()) x[unknowns_ + q] = t[0][q];
         continue;
       }
-      const auto &d = w_.toward[q / 3][q % 3];
+      const auto &d = w_.toward[q / n_][q % n_];
       x[q] = d[0] * t[0][q] + d[1] * t[1][q];
-      x[corners_ + q] = d[0] * t[1][q] - d[1] * t[0][q];
+      x[unknowns_ + q] = d[0] * t[1][q] - d[1] * t[0][q];
     }
   }
   void set_bounds(const std::size_t e, const int i)
   {
     double own = 0;
-    for (int j = 0; j < 3; ++j) own += mean_product(i, j) * mean_product(i, j);
-    const double diagonal = c_.area[e] * c_.area[e] * own / (c_.modulus * size_) + mass_weight(e) * mean_product(i, i);
+    for (int j = 0; j < n_; ++j) own += forces_[j][i] * forces_[j][i];
+    const double diagonal = c_.area[e] * c_.area[e] * own / (c_.modulus * size_) + mass_weight(e) * mass_[i][i];
     for (int k = 0; k < w_.components; ++k) {
-      const std::size_t at = k * corners_ + 3 * e + i;
+      const std::size_t at = k * unknowns_ + n_ * e + i;
       low_bound_[at] = w_.low[k][e][i];
       high_bound_[at] = w_.high[k][e][i];
       scale_[at] = 1 / std::sqrt(diagonal);
     }
     if (hardens()) {
-      const std::size_t at = corners_ + 3 * e + i;
+      const std::size_t at = unknowns_ + n_ * e + i;
       const double limit = w_.high[0][e][i];
       start_[at] = std::max(0., start_[at] - limit);
       high_bound_[at] = std::isinf(limit) ? 0 : std::numeric_limits<double>::infinity();
       scale_[at] = 1 / std::sqrt(diagonal + beyond_weight(e));
     }
-    for (std::size_t at = 3 * e + i; at < start_.size(); at += corners_)
+    for (std::size_t at = n_ * e + i; at < start_.size(); at += unknowns_)
       start_[at] = std::clamp(start_[at], low_bound_[at], high_bound_[at]);
   }
   double near_weight(const std::size_t e) const
@@ -156,8 +176,8 @@ private:
   }
   /// With the energy c p^2/2 of the foundation's springs.
   double mass_weight(const std::size_t e) const { return near_weight(e) + w_.spring * c_.area[e]; }
-  /// Of the squares of what pressures at the corners exceed the yield limit by: (p - xi)^2/(2 H) is convex, so that its integral is no larger.
-  double beyond_weight(const std::size_t e) const { return c_.area[e] / (3 * w_.rise); }
+  /// Of the squares of what coefficients exceed the yield limit by: (p - xi)^2/(2 H) is convex, so that its integral is no larger.
+  double beyond_weight(const std::size_t e) const { return c_.area[e] / (n_ * w_.rise); }
   /// Squares of intervals of hats on all levels, from about four nodes for each down to one for all.
   void list_hats()
   {
@@ -211,20 +231,14 @@ private:
     }
     force = sum;
   }
-  /// y += what the tractions do to forces at the points, transposed.
-  void add_transposed(const std::vector<double> &force, std::vector<double> &y) const
-  {
-    for (std::size_t e = 0; e < c_.facet.size(); ++e)
-      for (int a = 0; a < 3; ++a)
-        for (int j = 0; j < 3; ++j)
-          if (w_.free[c_.point[e][a]])
-            y[3 * e + j] += c_.area[e] * mean_product(a, j) * force[c_.point[e][a]] / (c_.modulus * size_);
-  }
 
   const SpaceContact &c_;
   const WantedInSpace &w_;
-  std::size_t corners_; // of facets
-  double size_ = 0;     // of facets [m]
+  int n_; // coefficients of a facet
+  std::size_t unknowns_;
+  std::array<OfTriangle, 6> forces_{},
+      mass_{};      // means of products of shape functions and Bernstein polynomials, and of these
+  double size_ = 0; // of facets [m]
   std::vector<Hats> levels_;
   std::vector<double> f_, scale_, start_, low_bound_, high_bound_;
 };

@@ -2,6 +2,7 @@
 #include "space_contact.hpp"
 
 #include "facet_polynomials.hpp"
+#include "rpc/contact/law/foundation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +35,7 @@ SpaceContact square(const int n, const double limit, const Pressure &pressure)
     for (int j = 0; j < n; ++j)
       for (int upper = 0; upper < 2; ++upper) {
         const int a = i * (n + 1) + j, b = a + n + 1;
-        c.point.push_back(upper ? std::array<int, 3>{a, a + 1, b + 1} : std::array<int, 3>{a, b, b + 1});
+        c.point.push_back(upper ? std::array<int, 6>{a, a + 1, b + 1} : std::array<int, 6>{a, b, b + 1});
         c.facet.push_back(static_cast<LO>(c.facet.size()));
         c.area.push_back(0.5);
         c.limit_of.push_back({limit, limit, limit});
@@ -51,14 +52,14 @@ SpaceContact square(const int n, const double limit, const Pressure &pressure)
 TEST(TriangleIntegrals, AreThoseOfHandAlgebra)
 {
   // v = 1 - 2 (y + z) in barycentric x, y, z: positive where x > 1/2, a quarter of the area, with the mean 1/3 there.
-  const ContactIntegrals even = contact_integrals({1, -1, -1}, {2, 2, 2}, {{6, 6, 6}});
+  const ContactIntegrals even = contact_integrals(1, OfTriangle{1, -1, -1}, {2, 2, 2}, {{6, 6, 6}});
   EXPECT_NEAR(even.energy, 6. / 12, 1e-14);
   // (xi - p) v+ + p v-: 4/12, and 2 (v+ - v) with the mean of v -1/3.
   EXPECT_NEAR(even.gap, 4. / 12 + 2 * (1. / 12 + 1. / 3), 1e-14);
-  const ContactIntegrals off = contact_integrals({-1, -1, -2}, {2, 2, 2}, {{inf, inf, inf}});
+  const ContactIntegrals off = contact_integrals(1, OfTriangle{-1, -1, -2}, {2, 2, 2}, {{inf, inf, inf}});
   EXPECT_EQ(off.energy, 0);
   EXPECT_NEAR(off.gap, 8. / 3, 1e-14);
-  EXPECT_EQ(contact_integrals({0, 0, 0}, {2, 1, 2}, {{inf, inf, inf}}).gap, 0);
+  EXPECT_EQ(contact_integrals(1, OfTriangle{0, 0, 0}, {2, 1, 2}, {{inf, inf, inf}}).gap, 0);
 }
 
 TEST(TriangleIntegrals, AreThoseOfManyPoints)
@@ -77,7 +78,7 @@ TEST(TriangleIntegrals, AreThoseOfManyPoints)
       yielding += rule.weight[q] * 4 * std::max(depth, 0.);
       gap += rule.weight[q] * ((4 - pressure) * std::max(depth, 0.) + pressure * std::max(-depth, 0.));
     }
-    const ContactIntegrals exact = contact_integrals(v, p, {{4, 4, 4}});
+    const ContactIntegrals exact = contact_integrals(1, v, p, {{4, 4, 4}});
     EXPECT_NEAR(exact.energy, yielding, 1e-5);
     EXPECT_NEAR(exact.gap, gap, 1e-5);
   }
@@ -113,7 +114,7 @@ TEST(TriangleIntegrals, OfLawsAreThoseOfManyPoints)
       gap += rule.weight[q] * (stored + law.spring * pressure * pressure / 2 - pressure * deep +
                                (beyond > 0 ? beyond * beyond / (2 * law.rise) : 0));
     }
-    const ContactIntegrals exact = contact_integrals(v, admissible, law);
+    const ContactIntegrals exact = contact_integrals(1, v, admissible, law);
     EXPECT_NEAR(exact.energy, energy, 1e-4 * energy);
     EXPECT_NEAR(exact.gap, gap, 1e-4 * gap);
   }
@@ -139,7 +140,7 @@ TEST(TriangleIntegrals, OfFrictionAreNoSmallerThanThoseOfManyPointsAndNear)
     energy += rule.weight[at] * limit * std::hypot(slip[0], slip[1]);
     work += rule.weight[at] * along;
   }
-  const ContactIntegrals found = friction_integrals(e, q, s);
+  const ContactIntegrals found = friction_integrals(1, e, q, s);
   EXPECT_GE(found.energy, energy * (1 - 1e-6));
   EXPECT_LT(found.energy, 1.02 * energy);
   EXPECT_NEAR(found.gap, found.energy - work, 1e-6 * energy);
@@ -173,7 +174,7 @@ TEST(FittedPressureInSpace, IsTheOneThatTheForcesComeFromWhereThatIsLinear)
 {
   const SpaceContact c = square(6, inf, [](const double, const double) { return 7.; });
   for (const OfTriangle &p : fitted_pressure(c, std::vector<OfTriangle>(c.facet.size(), OfTriangle{})))
-    for (const double x : p) EXPECT_NEAR(x, 7, 1e-3);
+    for (int v = 0; v < 3; ++v) EXPECT_NEAR(p[v], 7, 1e-3);
 }
 
 TEST(FittedPressureInSpace, KeepsToTheYieldStressAndNearToTheForces)
@@ -194,6 +195,133 @@ TEST(FittedPressureInSpace, KeepsToTheYieldStressAndNearToTheForces)
   for (std::size_t i = 0; i < c.force.size(); ++i) wanted_moment += c.force[i] * c.place[i][0];
   EXPECT_NEAR(force, wanted, 2e-3 * wanted);
   EXPECT_NEAR(moment, wanted_moment, 5e-3 * wanted_moment);
+}
+
+/// The same square with a third of a triangle in the middle of each side, and nothing at the vertices.
+template <class Pressure>
+SpaceContact quadratic_square(const int n, const double limit, const Pressure &pressure)
+{
+  const int all = 2 * n + 1;
+  SpaceContact c;
+  c.order = 2;
+  c.modulus = 1000;
+  c.normal = {0, 0, -1};
+  c.force.assign(all * all, 0.);
+  c.free.assign(all * all, 1);
+  for (int i = 0; i < all; ++i)
+    for (int j = 0; j < all; ++j) c.place.push_back({i / 2., j / 2.});
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (int upper = 0; upper < 2; ++upper) {
+        const auto at = [&](const int x, const int y) { return (2 * i + x) * all + 2 * j + y; };
+        c.point.push_back(upper ? std::array<int, 6>{at(0, 0), at(0, 2), at(2, 2), at(0, 1), at(1, 2), at(1, 1)}
+                                : std::array<int, 6>{at(0, 0), at(2, 0), at(2, 2), at(1, 0), at(2, 1), at(1, 1)});
+        c.facet.push_back(static_cast<LO>(c.facet.size()));
+        c.area.push_back(0.5);
+        c.limit_of.push_back({limit, limit, limit, limit, limit, limit});
+        OfTriangle p{};
+        for (int a = 3; a < 6; ++a) {
+          const int point = c.point.back()[a];
+          p[a] = pressure(c.place[point][0], c.place[point][1]);
+          c.force[point] += p[a] / 6;
+        }
+        c.pressure.push_back(through_middles(p));
+      }
+  return c;
+}
+
+TEST(QuadraticTriangle, HasCoefficientsOfItsNodesAndMeansOfProducts)
+{
+  const FacetRule rule = facet_rule(3, 3);
+  const OfTriangle at_nodes = {1, -2, 3, 0.5, 4, -1};
+  const std::array<Barycentric, 6> nodes{
+      {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}}};
+  for (int a = 0; a < 6; ++a) EXPECT_NEAR(value_of(2, bernstein_of(2, at_nodes), nodes[a]), at_nodes[a], 1e-14);
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) {
+      OfTriangle x{}, y{};
+      x[i] = y[j] = 1;
+      double mean = 0;
+      for (int q = 0; q < rule.size(); ++q)
+        mean += rule.weight[q] * value_of(2, x, rule.point[q]) * value_of(2, y, rule.point[q]);
+      EXPECT_NEAR(mean_product(2, i, j), mean, 1e-14);
+    }
+  const OfTriangle linear = through_middles({0, 0, 0, 1.5, 2.5, 2}); // 1 + y + 2 z
+  EXPECT_NEAR(linear[0], 1, 1e-14);
+  EXPECT_NEAR(linear[1], 2, 1e-14);
+  EXPECT_NEAR(linear[2], 3, 1e-14);
+}
+
+TEST(QuadraticTriangle, HasIntegralsNoSmallerThanThoseOfManyPointsAndNear)
+{
+  // Open, elastic, yielding and hardening parts that curves divide, and a yield limit that varies with dents.
+  const FacetRule rule = refined(3, facet_rule(3, 3), 100);
+  const OfTriangle v = {0.3, -0.4, 0.1, 0.2, -0.3, 0.25}, p = {6, 0, 3, 5, 1, 4}, even = {4, 4, 4, 4, 4, 4},
+                   dented = {4, 5, 4.5, 4.2, 5, 4.1};
+  for (const TriangleLaw &law : {TriangleLaw{even, 0, 0}, TriangleLaw{even, 0, 0.03}, TriangleLaw{dented, 8, 0},
+                                 TriangleLaw{dented, 8, 0.03}, TriangleLaw{{inf, inf, inf, inf, inf, inf}, 0, 0.03}}) {
+    const bool rigid = std::isinf(law.limit[0]);
+    OfTriangle admissible = p;
+    for (int k = 0; k < 6 && law.rise == 0; ++k) admissible[k] = std::min(p[k], law.limit[k]);
+    double energy = 0, gap = 0;
+    for (int q = 0; q < rule.size(); ++q) {
+      const contact::Foundation f{rigid ? inf : value_of(2, law.limit, rule.point[q]), law.rise, law.spring};
+      const double deep = value_of(2, v, rule.point[q]), pressure = value_of(2, admissible, rule.point[q]);
+      energy += rule.weight[q] * contact::foundation_energy(deep, f);
+      gap += rule.weight[q] *
+             (contact::foundation_energy(deep, f) + contact::conjugate_energy(pressure, f) - pressure * deep);
+    }
+    const ContactIntegrals found = contact_integrals(2, v, admissible, law);
+    EXPECT_GE(found.energy, energy * (1 - 1e-6));
+    EXPECT_GE(found.gap, gap * (1 - 1e-6));
+    EXPECT_LT(found.energy, energy * 1.003);
+    EXPECT_LT(found.gap, gap + 0.003 * energy);
+  }
+  // v = 1 - 2 (y + z): what a plane of order 1 has.
+  const OfTriangle flat = bernstein_of(2, {1, -1, -1, 0, -1, 0}), two = {2, 2, 2, 2, 2, 2}, six = {6, 6, 6, 6, 6, 6};
+  EXPECT_NEAR(contact_integrals(2, flat, two, {six}).gap, 4. / 12 + 2 * (1. / 12 + 1. / 3), 2e-3);
+  const OfTriangle off = {-1, -1, -2, -1, -1, 0};
+  const ContactIntegrals rigid = contact_integrals(2, off, two, {{inf, inf, inf, inf, inf, inf}});
+  EXPECT_EQ(rigid.energy, 0);
+  EXPECT_NEAR(rigid.gap, 2 * 6. / 6, 1e-14);
+}
+
+TEST(QuadraticTriangle, HasFrictionNoSmallerThanThatOfManyPointsAndNear)
+{
+  const FacetRule rule = refined(3, facet_rule(3, 3), 60);
+  const std::array<OfTriangle, 2> e = {{{0.3, -0.4, 0.1, 0.2, -0.1, 0.5}, {0.1, 0.2, -0.3, 0, 0.4, -0.2}}},
+                                  q = {{{0.5, -1, 0, 0.2, 0.3, -0.4}, {0, 0.4, -0.7, 1, 0, 0.5}}};
+  const OfTriangle s = {1, 2, 1.5, 1.2, 1.3, 2};
+  double energy = 0, work = 0;
+  for (int at = 0; at < rule.size(); ++at) {
+    const auto here = [&](const OfTriangle &of) { return value_of(2, of, rule.point[at]); };
+    energy += rule.weight[at] * here(s) * std::hypot(here(e[0]), here(e[1]));
+    work += rule.weight[at] * (here(e[0]) * here(q[0]) + here(e[1]) * here(q[1]));
+  }
+  const ContactIntegrals found = friction_integrals(2, e, q, s);
+  EXPECT_GE(found.energy, energy * (1 - 1e-6));
+  EXPECT_LT(found.energy, 1.03 * energy);
+  EXPECT_NEAR(found.gap, found.energy - work, 1e-6 * energy);
+}
+
+TEST(FittedPressureInSpace, OfOrder2KeepsToTheYieldStressAndToForcesThatVerticesHaveNoPartOf)
+{
+  const std::vector<OfTriangle> none(2 * 36, OfTriangle{});
+  for (const OfTriangle &p :
+       fitted_pressure(quadratic_square(6, inf, [](const double, const double) { return 7.; }), none))
+    for (const double x : p) EXPECT_NEAR(x, 7, 1e-3);
+  const SpaceContact c =
+      quadratic_square(6, 5, [](const double x, const double y) { return std::clamp(9 - 1.1 * x - 0.6 * y, 0., 5.); });
+  double force = 0;
+  const auto p = fitted_pressure(c, none);
+  for (std::size_t e = 0; e < p.size(); ++e)
+    for (const double x : p[e]) {
+      EXPECT_GE(x, 0);
+      EXPECT_LE(x, 5);
+      force += c.area[e] * x / 6;
+    }
+  const double wanted = std::accumulate(c.force.begin(), c.force.end(), 0.);
+  EXPECT_NEAR(force, wanted, 2e-3 * wanted);
 }
 
 TEST(FacetPolynomials, AreOrthogonalAndExpandLinearFunctions)
