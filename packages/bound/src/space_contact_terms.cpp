@@ -99,9 +99,11 @@ void move_out(const SpaceContact &c, const mesh::Mesh &mesh, const HostView<doub
 {
   if (!never_gives_way(c)) return;
   std::vector<Point> at = displacements_of(c, mesh, u);
-  std::vector<double> deep(at.size());
-  double size = 0;
-  for (std::size_t i = 0; i < at.size(); ++i) deep[i] = depth_of(c.points[i], at[i], size);
+  std::vector<double> deep; // what rounding has left of it too: else it would stay where a point is moved by more
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const SpacePoint &p = c.points[i];
+    deep.push_back(p.normal[0] * at[i][0] + p.normal[1] * at[i][1] + p.normal[2] * at[i][2] - (p.gap + p.dent));
+  }
   const auto lower = [&](const int i, const double to) {
     const Point direction = {c.points[i].direction[0], c.points[i].direction[1], c.points[i].direction[2]};
     const double squared = inner(direction, direction);
