@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Commands, decks, outputs, pictures and links of Markdown pages, against the program and the source tree.
 
-    RPC_PROGRAM=build/rpc python3 pages.py [--update] readme|tutorial|gallery|input|PAGE.md ...
+    RPC_PROGRAM=build/rpc python3 pages.py [--update] readme|tutorial|gallery|handbook|input|PAGE.md ...
 
 Each page's ```sh blocks are run, in order, in a folder of their own that looks like the source tree with the program in it; decks in
 ```xml and ```yaml blocks must pass rpc --check; ```text blocks are what the commands before them print. page.py has the marks that say
@@ -25,7 +25,7 @@ import outputs
 from page import MARKS, Page
 
 SOURCE = pathlib.Path(os.environ.get("RPC_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[2]))
-GROUPS = {"readme": ["README.md"], "tutorial": ["doc/tutorial/*.md"], "gallery": ["doc/gallery/*.md", "doc/gallery/*/*.md"],
+GROUPS = {"readme": ["README.md"], "tutorial": ["doc/tutorial/*.md"], "gallery": ["doc/gallery/*.md", "doc/gallery/*/*.md"], "handbook": ["doc/handbook.md"],
           "input": ["doc/input/*.md", "doc/commands.md", "doc/pictures.md"]}
 CHECKED = "doc/gallery"  # whose test solves its decks, to coarser targets: here they are checked only
 GMSH = "4.8"  # with whose meshes the numbers of the pages were made: Debian 12's

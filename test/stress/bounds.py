@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Random scenes with a guaranteed bound: it holds the energy of a much finer solution, and is not much larger than the error.
 
-    python3 bounds.py --rpc=build/rpc [--kind=plane|space [--element=P1|P2|Q1]] [--laws=1] [--seed=1] [--scenes=100] [--only=K] [--corners=1] [--jobs=2] [--keep=DIR]
+    python3 bounds.py --rpc=build/rpc [--kind=plane|revolution|space [--element=P1|P2|Q1]] [--laws=1] [--seed=1] [--scenes=100] [--only=K] [--corners=1] [--jobs=2] [--keep=DIR]
 
 Scene K comes from the seed and K alone: a rectangle, a parallelogram or an L of P1, P2, Q1 or Q2, of triangles also with distorted cells, of one or two
 materials, in plane strain or stress, held at one or two sides or pressed down by one, with smooth loads on sides and maybe a force per volume, on a
@@ -11,7 +11,8 @@ reference, or a run fails. Told are the effectivities sqrt((J(u^) - lower) / (J(
 exceed LARGE. With --laws=1 foundations harden, lie on springs, rub with Tresca's friction, or keep the dents of a first step, whose meshes are nested
 triangles: then the reference is the last mesh of the same run. In space the bodies are blocks, sheared or distorted or with a corner cut out, of tetrahedra of order 1 or 2 or
 hexahedra of order 1 (--element), and no laws have dents; the reference has cells of P2 half as long, of P2 a third: its interval must meet that of the scene,
-its contact force must lie in the interval of the force, where there is one, but for what its error makes of it, and LARGE is that of LARGE_IN_SPACE. With --corners=1 loads do not end at the corners: stresses jump with the direction there, which stresses with prescribed tractions resolve
+its contact force must lie in the interval of the force, where there is one, but for what its error makes of it, and LARGE is that of LARGE_IN_SPACE. With --kind=revolution the plane
+bodies are sections of bodies of revolution, on their axis or with a hole, no laws have dents, and LARGE is LARGE_OF_REVOLUTION. With --corners=1 loads do not end at the corners: stresses jump with the direction there, which stresses with prescribed tractions resolve
 worse than displacements. The exit code is 1 if a scene failed, an effectivity is below 1 by more than its reference may be off, or the median exceeds LARGE.
 """
 import dataclasses
@@ -32,6 +33,7 @@ from generate import log_uniform
 from solid import Bricks
 
 LARGE = 1.3
+LARGE_OF_REVOLUTION = 1.6
 LARGE_IN_SPACE = {"P1": 1.5, "P2": 1.6, "Q1": 1.6}
 FINER = 2
 FINER_IN_SPACE = {"P1": 2, "P2": 3, "Q1": 2}
@@ -113,6 +115,29 @@ def deck(rng, ends, jumps):
     lists["Contact"]["Gap"] = repr(depth * even) if rng.random() < 0.6 else f"{depth * even!r} + {depth * rng.uniform(0, 1.5)!r}*x"
     lists["Adapt"] = {"Error Bound": "guaranteed"}
     return lists, halves
+
+
+def revolved(rng, place, element, ends, corners):
+    """(deck, whether there are two materials, place) of a body with the section `place`: with a hole, or, where its left side is upright, maybe without."""
+    whole = place(0, 1)[0] == 0 and rng.random() < 0.6
+    hole = 0.0 if whole else rng.uniform(0.2, 2) + max(0.0, -place(0, 1)[0])
+    side, low, high = ends["top"]
+    ends = {**ends, "top": (side, low + hole, high + hole)}
+    lists, halves = deck(rng, ends, corners)
+    lists["Kinematics"] = "axisymmetric"
+    if element[1] == "1" and place(0, 1)[0] != 0:  # not covered
+        lists.pop("Body Force", None)
+    none, load = {"X": "0", "Y": "0"}, load_of(lists)
+    if whole:
+        down = repr(-load / 1000 * rng.uniform(0.3, 1.5))
+        lists["Dirichlet"] = rng.choice([{"right": none}, {"top": {"X": "0", "Y": down}}, {"right": {"X": "0"}, "top": {"Y": down}}])
+        lists["Traction"] = {name: entry for name, entry in lists.get("Traction", {}).items() if name == "right" and name not in lists["Dirichlet"]}
+        if "top" not in lists["Dirichlet"]:  # at the axis loads are of the elements' order but one
+            end = "" if element[1] == "1" else f"*(1 - x/{high!r})"
+            lists["Traction"]["top"] = {"Y": f"{-load * rng.uniform(0.3, 1)!r}{end}"}
+        if not lists["Traction"]:
+            del lists["Traction"]
+    return lists, halves, lambda s, t: (place(s, t)[0] + hole, place(s, t)[1])
 
 
 def solid(rng):
@@ -218,9 +243,16 @@ def judge(options, number):
     element = ["P1", "P2", "Q1", "Q2"][number % 4]
     place, nx, ny, cut_x, cut_y = shape(rng)
     ends = {"top": ("x", place(0, 1)[0], place(1 - cut_x / nx, 1)[0]), "right": ("y", 0.0, place(1, 1 - cut_y / ny)[1])}
-    lists, halves = deck(rng, ends, options.corners)
     laws = random.Random(f"{options.seed}/laws/{number}")
-    if options.laws and law(laws, lists["Contact"], load_of(lists), 1000.0):
+    if options.kind == "revolution":
+        lists, halves, place = revolved(rng, place, element, ends, options.corners)
+        while options.laws and law(laws, contact := dict(lists["Contact"]), load_of(lists), 1000.0):
+            pass  # dents of a body of revolution are not covered
+        if options.laws:
+            lists["Contact"] = contact
+    else:
+        lists, halves = deck(rng, ends, options.corners)
+    if options.kind == "plane" and options.laws and law(laws, lists["Contact"], load_of(lists), 1000.0):
         return judge_dents(options, number, laws, lists, (place, nx, ny, cut_x, cut_y, halves))
     grids = [mesh_of(rng, element, place, nx, ny, cut_x, cut_y, halves), grid_of("P2", place, nx, ny, cut_x, cut_y, halves, FINER)]
     finer = [f"--set=Adapt->Target Relative Error={TARGET}", f"--set=Adapt->Max Dofs={MOST_DOFS}"]
@@ -248,7 +280,7 @@ def judge_runs(options, number, element, lists, runs):
                 return outcome
             found.append(summary)
         compare(outcome, *found)
-        if options.kind == "space":
+        if options.kind != "plane":
             compare_forces(outcome, *found)
     except Exception as error:  # a run that took too long, a file that is no JSON
         outcome.complaint = f"{type(error).__name__}: {error}"[:300]
@@ -332,8 +364,8 @@ def compare_forces(outcome, summary, reference):
 
 def main():
     options = trials.arguments(__doc__, 100, ("--corners", {"type": int, "default": 0}), ("--laws", {"type": int, "default": 0}),
-                               ("--kind", {"choices": ["plane", "space"], "default": "plane"}), ("--element", {"choices": sorted(LARGE_IN_SPACE), "default": "P1"}))
-    large = LARGE_IN_SPACE[options.element] if options.kind == "space" else LARGE
+                               ("--kind", {"choices": ["plane", "revolution", "space"], "default": "plane"}), ("--element", {"choices": sorted(LARGE_IN_SPACE), "default": "P1"}))
+    large = {"plane": LARGE, "revolution": LARGE_OF_REVOLUTION, "space": LARGE_IN_SPACE[options.element]}[options.kind]
     outcomes = list(trials.each(options, judge))
     for o in outcomes:
         if o.complaint:

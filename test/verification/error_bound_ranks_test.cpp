@@ -26,7 +26,8 @@ TEST(ErrorBoundOnRanks, IsThatOfOneRank)
   } const scenes[] = {
       {input + "beam.xml", {"Contact->Yield Stress=16", "Mesh->Cells={20, 4}"}},
       {input + "beam.xml", {"Contact->Yield Stress=inf", "Mesh->Cells={20, 4}"}},
-      {decks + "heavy_block.xml", {"Contact->Hardening=400", "Contact->Stiffness=3e3", "Contact->Friction Bound=0.5"}}};
+      {decks + "heavy_block.xml", {"Contact->Hardening=400", "Contact->Stiffness=3e3", "Contact->Friction Bound=0.5"}},
+      {decks + "barrel.xml", {"Contact->Gap=0.004*x", "Body Force->Y=-4", "Contact->Friction Bound=0.5"}}};
   for (const auto &scene : scenes)
     for (const std::string element : {"P1", "P2", "Q1", "Q2"}) {
       SCOPED_TRACE(scene.law[0] + ", " + element);

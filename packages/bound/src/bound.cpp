@@ -6,6 +6,7 @@
 #include "contact_force.hpp"
 #include "contact_terms.hpp"
 #include "descent.hpp"
+#include "revolution_cells.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/core/timed.hpp"
 #include "space_bound.hpp"
@@ -20,7 +21,8 @@ namespace
 {
 
 constexpr const char *covered =
-    "\"Adapt->Error Bound\" = guaranteed covers plane strain and plane stress of straight triangles or parallelograms, "
+    "\"Adapt->Error Bound\" = guaranteed covers plane strain, plane stress and bodies of revolution of straight "
+    "triangles or parallelograms, "
     "straight tetrahedra, and hexahedra of order 1, on foundations whose law is the same all along a side";
 
 void require_of_deck(const bool condition, const std::string &what)
@@ -52,6 +54,10 @@ CellInput cell_input(const analysis::Problem &problem, const analysis::Model &mo
   in.num_owned_cells = d.mesh->num_owned_cells;
   in.facets = facets_of(d);
   in.reference = reference_stress(d.mesh->element);
+  if (d.axisymmetric()) {
+    in.revolution = revolution_tables(d.mesh->element);
+    in.on_axis = d.on_axis;
+  }
   return in;
 }
 
@@ -74,7 +80,6 @@ double product_over_ranks(const CellInput &in, const Comm &comm, const Tractions
 
 void require_covered(const analysis::Task &task)
 {
-  require_of_deck(task.model.kinematics != fem::Kinematics::axisymmetric, "the body is axisymmetric");
   for (const auto &condition : task.model.dirichlet)
     require_of_deck(!condition.is_moved() && !condition.rigid,
                     "\"" + condition.path() + "\" " +
@@ -113,7 +118,11 @@ FacetsOfMesh require_covered(const analysis::Problem &problem, const analysis::S
   require_of_deck(distortion <= 1e-9, "cells of " + d.mesh->element.name() +
                                           " are curved, or quadrilaterals whose opposite sides are not parallel (by " +
                                           shown(distortion) + " of a cell)");
-  boundary_of(problem, step, in.facets, {HostView<double *>("rpc::bound::none", step.contact.size()), {}});
+  const Boundary b =
+      boundary_of(problem, step, in.facets, {HostView<double *>("rpc::bound::none", step.contact.size()), {}});
+  if (!in.of_revolution()) return {};
+  const std::string reason = loads_not_covered(in, d.mesh->comm(), b.tractions, d.mesh->num_owned_nodes());
+  require_of_deck(reason.empty(), reason);
   return {};
 }
 
@@ -129,13 +138,22 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   const Boundary boundary = boundary_of(problem, s.step, in.facets, tractions_of(s.contact));
 
   EnergyBound bound;
+  const auto squared = [&](const Vector &x) {
+    if (in.of_revolution()) return squared_of_revolution(in, d.mesh->comm(), *fem::on_overlap(d, x));
+    return Squared(fem::internal_work(d, model.materials, x).energy_norm_squared);
+  };
   const HostView<double *> moved = moved_out(problem, model, s, boundary.sides, bound);
   const RCP<const Vector> u = vector_of(moved, d.owned_dofs);
   const ContactTerms contact = contact_terms(boundary.sides, *d.mesh, moved);
   bound.missing = contact.missing;
-  const double strain = fem::internal_work(d, model.materials, *u).energy_norm_squared;
+  if (in.of_revolution()) {
+    Vector way(*u, Teuchos::Copy);
+    way.update(-1, *s.u, 1);
+    bound.moved = std::sqrt(std::max(0., squared(way).upper));
+  }
+  const Squared strain = squared(*u);
   const double work = work_of(d, known_moments(in, boundary.tractions), in, *u);
-  bound.upper = strain / 2 - work + contact.energy;
+  bound.upper = strain.upper / 2 - work + contact.energy;
 
   const BoundaryTractions all = with_contact(boundary.tractions, boundary.sides, contact.tractions);
   const Solved galerkin = timed_galerkin_solution(problem, s, options, in, all, bound);
@@ -144,6 +162,7 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   const FacetExchange exchange(d, in.facets);
   const Comm &comm = d.mesh->comm();
   const Tractions t = equilibrated(in, all, galerkin.Q, mean_moments(in, *fem::on_overlap(d, *galerkin.u)), exchange);
+  if (in.of_revolution()) admit_on_axis(in, t);
   const double lift = norm_of_lifted_loads(in, comm, lifted_loads(d.mesh->element), boundary.tractions.load);
   const DeviceView<double *> of_cell("rpc::bound::of_cell", in.num_owned_cells);
   const RCP<const Vector> on_overlap = fem::on_overlap(d, *u);
@@ -159,10 +178,10 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   const StressDifference left = stress_difference(in, comm, t, *on_overlap, of_cell);
   const double rho = take_descent(comm, in, boundary.sides, contact, left, falls, lift, of_cell, bound);
   if (!bound.missing.empty()) return bound;
+  bound.lower -= (strain.upper - strain.lower) / 2;
   const auto work_with = [&](const BoundaryTractions &tractions, const Vector &w) {
     return work_of(d, known_moments(in, tractions), in, w);
   };
-  const auto squared = [&](const Vector &x) { return fem::internal_work(d, model.materials, x).energy_norm_squared; };
   add_forces(problem, s, options, boundary.sides, rho, *u, boundary.tractions, all, work_with, squared, bound);
   return bound;
 }

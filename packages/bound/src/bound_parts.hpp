@@ -109,38 +109,40 @@ double take_descent(const Comm &comm, const Input &in, const std::vector<Side> &
   return std::sqrt(stress_norm * stress_norm / 4 + contact.gap);
 }
 
-/// a(u, w), by norms of sums of alike size. @param squared  gives |x|^2
-template <class Squared>
-double energy_product(const Squared &squared, const Vector &u, const Vector &w)
+/// Bounds of a(u, w), by norms of sums of alike size. @param squared  gives Squared of a displacement (owned dofs)
+template <class OfU>
+Squared energy_product(const OfU &squared, const Vector &u, const Vector &w)
 {
-  const double of_u = squared(u), of_w = squared(w);
-  if (of_u == 0 || of_w == 0) return 0;
+  const double of_u = Squared(squared(u)).upper, of_w = Squared(squared(w)).upper;
+  if (of_u == 0 || of_w == 0) return {};
   const double scale = std::sqrt(of_u / of_w);
   Vector sum(u, Teuchos::Copy), difference(u, Teuchos::Copy);
   sum.update(scale, w, 1);
   difference.update(-scale, w, 1);
-  return (squared(sum) - squared(difference)) / (4 * scale);
+  const Squared more = squared(sum), less = squared(difference);
+  return {(more.lower - less.upper) / (4 * scale), (more.upper - less.lower) / (4 * scale)};
 }
 
 /// The intervals of contact forces. Collective.                                                  doc/bounds.md (13.14), (13.15)
 /// @param rho  of (13.13) [J^(1/2)]   @param u  (owned dofs) u^
 /// @param loads, all  without and with contact's tractions
-/// @param work  of tractions and the body force with a displacement (owned dofs) [J]   @param squared  its |w|^2
-template <class Side, class Work, class Squared>
+/// @param work  of tractions and the body force with a displacement (owned dofs) [J]   @param squared  bounds of its |w|^2
+template <class Side, class Work, class OfU>
 void add_forces(const analysis::Problem &problem, const analysis::StepSolution &s,
                 const solver::LinearSolverOptions &options, const std::vector<Side> &sides, const double rho,
                 const Vector &u, const BoundaryTractions &loads, const BoundaryTractions &all, const Work &work,
-                const Squared &squared, EnergyBound &bound)
+                const OfU &squared, EnergyBound &bound)
 {
   for (std::size_t k = 0; k < sides.size(); ++k) {
     const UnitPress press = unit_press(problem, s.step.time, sides, static_cast<int>(k), options);
     ForceBound force;
     force.missing = press.missing;
     if (press.missing.empty()) {
-      const double middle = work(loads, *press.w) - (work(all, *press.w) + energy_product(squared, u, *press.w)) / 2;
-      const double room = rho * std::sqrt(squared(*press.w));
-      force.lower = std::max(0., middle - room + press.low);
-      force.upper = std::min(largest_force(sides[k]), middle + room + press.high);
+      const Squared product = energy_product(squared, u, *press.w);
+      const double of_work = work(loads, *press.w) - work(all, *press.w) / 2,
+                   room = rho * std::sqrt(Squared(squared(*press.w)).upper);
+      force.lower = std::max(0., of_work - product.upper / 2 - room + press.low);
+      force.upper = std::min(largest_force(sides[k]), of_work - product.lower / 2 + room + press.high);
     }
     bound.contact_force.push_back(force);
   }

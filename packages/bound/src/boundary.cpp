@@ -45,8 +45,9 @@ private:
 /// Whether the polynomials that stand for a traction on the facets of a side are that traction, between their points too. What they lack, such
 /// as half of a jump within a facet, no stress would balance, and J of the exact solution could lie below its bound.
 /// @param coefficients  (facets of the mesh, degree, component) times lengths [N]
-void require_represented_load(const OnHost &host, const fem::VectorField &traction, const std::string &name,
-                              const std::vector<LO> &facets, const HostView<double ***> &coefficients)
+void require_represented_load(const OnHost &host, const bool revolution, const fem::VectorField &traction,
+                              const std::string &name, const std::vector<LO> &facets,
+                              const HostView<double ***> &coefficients)
 {
   constexpr int parts = 4;         // of a facet, of points_of_fields each
   constexpr double allowed = 1e-3; // of the largest traction of the entry: smooth loads stay below it on coarse cells
@@ -64,7 +65,7 @@ void require_represented_load(const OnHost &host, const fem::VectorField &tracti
         double polynomial = 0;
         for (int j = 0; j <= ReferenceStress::degree_of_loads; ++j)
           polynomial += coefficients(facets[e], j, i) / host.length_of(facets[e]) * legendre(j, rule.point[q]);
-        worst.add(t(e * n + q), polynomial, x(e * n + q, 0), x(e * n + q, 1));
+        worst.add(around(revolution, x(e * n + q, 0)) * t(e * n + q), polynomial, x(e * n + q, 0), x(e * n + q, 1));
       }
   }
   const std::string place = worst.beyond(host.mesh.comm(), allowed);
@@ -109,17 +110,19 @@ void add_load(const analysis::Problem &problem, const OnHost &host, const fem::T
   const Gauss rule = gauss(num_points);
   const HostPoints x = host.points(facets, rule);
   const HostView<double ***> own("rpc::bound::load_of_entry", sum.extent(0), sum.extent(1), 2);
+  const bool revolution = d.axisymmetric();
   for (int i = 0; i < 2; ++i) {
     const auto t = evaluate(traction[i], x, "Traction->" + load.name, host.mesh.comm());
     for (std::size_t e = 0; e < facets.size(); ++e)
       for (int j = 0; j <= ReferenceStress::degree_of_loads; ++j) {
         for (int q = 0; q < num_points; ++q)
-          own(facets[e], j, i) += (2 * j + 1) * rule.weight[q] * legendre(j, rule.point[q]) * t(e * num_points + q) *
+          own(facets[e], j, i) += (2 * j + 1) * rule.weight[q] * legendre(j, rule.point[q]) *
+                                  around(revolution, x(e * num_points + q, 0)) * t(e * num_points + q) *
                                   host.length_of(facets[e]);
         sum(facets[e], j, i) += own(facets[e], j, i);
       }
   }
-  require_represented_load(host, traction, load.name, facets, own);
+  require_represented_load(host, revolution, traction, load.name, facets, own);
 }
 
 } // namespace
@@ -129,7 +132,11 @@ Boundary boundary_of(const analysis::Problem &problem, const analysis::Step &ste
 {
   const analysis::Model model = problem.model().seen_at(step.time);
   const OnHost host(*problem.discretization().mesh, facets);
+  const fem::Discretization &d = problem.discretization();
   HostView<char *[2]> prescribed("rpc::bound::prescribed", facets.size());
+  const auto on_axis = [&](const LO f) {
+    return d.axisymmetric() && std::max(host.coords(host.node(f, 0), 0), host.coords(host.node(f, 1), 0)) <= d.on_axis;
+  };
   for (const auto &condition : model.dirichlet) {
     const auto &sides = host.mesh.sides;
     const auto side =
@@ -143,7 +150,17 @@ Boundary boundary_of(const analysis::Problem &problem, const analysis::Step &ste
     for (int i = 0; i < 2; ++i) {
       if (!condition.displacement[i]) continue;
       require_represented_displacement(*condition.displacement[i], host, facets, condition.name);
-      for (const LO f : facets) prescribed(f, i) = 1;
+      int lines = 0;
+      for (const LO f : facets) {
+        if (on_axis(f)) lines = 1; // u_r = 0 there as it is
+        prescribed(f, i) = !on_axis(f);
+      }
+      RPC_REQUIRE(i == 0 || max_all(host.mesh.comm(), lines) == 0,
+                  "deck: \"Adapt->Error Bound\" = guaranteed covers displacements that are prescribed on surfaces; "
+                  "\"Dirichlet->"
+                      << condition.name
+                      << "\" prescribes one along the axis, where the exact solution has no force. Write "
+                      << "\"estimated\"");
     }
   }
   Boundary b;

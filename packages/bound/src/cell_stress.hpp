@@ -3,6 +3,7 @@
 
 #include "facets.hpp"
 #include "reference_stress.hpp"
+#include "revolution_tables.hpp"
 #include "rpc/core/math.hpp"
 
 namespace rpc::bound
@@ -18,10 +19,13 @@ struct CellInput {
   double force[2] = {0, 0};     ///< body force [N/m^3]
   Facets facets;
   ReferenceStress reference;
+  RevolutionTables revolution; ///< of bodies of revolution
+  double on_axis = 0;          ///< of these: places with r up to this lie on the axis [m]
 
   LO num_owned_cells = 0; ///< the first ones
 
   LO num_cells() const { return static_cast<LO>(cells.extent(0)); }
+  KOKKOS_INLINE_FUNCTION bool of_revolution() const { return revolution.columns > 0; }
 };
 
 /// The affine map of a cell, x = F X + centre, with what follows from it.

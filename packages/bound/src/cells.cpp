@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cells.hpp"
 
+#include "revolution_cells.hpp"
+#include "revolution_energy.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -192,6 +195,7 @@ struct Difference {
 
 CellForms cell_forms(const CellInput &in, const Vector &u)
 {
+  if (in.of_revolution()) return forms_of_revolution(in, u);
   const int nt = in.reference.tractions;
   CellForms forms{DeviceView<double ***>("rpc::bound::A", in.num_cells(), nt, nt),
                   DeviceView<double **>("rpc::bound::b", in.num_cells(), nt)};
@@ -229,6 +233,7 @@ void add_up(const CellInput &in, const CellForms &forms, const Tractions &t, con
 StressDifference stress_difference(const CellInput &in, const Comm &comm, const Tractions &t, const Vector &u,
                                    const DeviceView<double *> &of_cell)
 {
+  if (in.of_revolution()) return difference_of_revolution(in, comm, t, u, of_cell);
   StressDifference d;
   Kokkos::parallel_reduce("rpc::bound::stress_difference", device_range(static_cast<LO>(of_cell.extent(0))),
                           Difference{in, device_read(u), t, of_cell, in.reference.degree}, d.energy,
@@ -260,9 +265,20 @@ double norm_of_lifted_loads(const CellInput &in, const Comm &comm, const LiftedL
               x[(s * beyond + j) * 2 + i] = cell.inverse[i][0] * t[0] + cell.inverse[i][1] * t[1];
           }
         }
-        if (!any) return;
+        double thickness = 1;
+        for (int v = 0; v < sides && in.of_revolution(); ++v) {
+          const double circle = 2 * Circle::pi * in.coords(in.cells(c, v), 0);
+          thickness = v == 0 ? circle : math::fmin(thickness, circle);
+        }
+        if (!any || thickness <= 2 * Circle::pi * in.on_axis) return; // at the axis there are none
         double C[3][3], T[3][3], S[3][3] = {};
         compliance(in.lame(in.block(c), 0), in.lame(in.block(c), 1), C);
+        if (in.of_revolution()) { // S has no divergence, so that there is no stress around the axis
+          const double lambda = in.lame(in.block(c), 0), mu = in.lame(in.block(c), 1),
+                       a = lambda / (3 * lambda + 2 * mu);
+          C[0][0] = C[1][1] = (1 - a) / (2 * mu);
+          C[0][1] = C[1][0] = -a / (2 * mu);
+        }
         cell.stress_map(T);
         for (int i = 0; i < 3; ++i)
           for (int j = 0; j < 3; ++j)
@@ -271,11 +287,25 @@ double norm_of_lifted_loads(const CellInput &in, const Comm &comm, const LiftedL
         const double s[6] = {S[0][0], S[1][1], S[2][2], S[0][1], S[0][2], S[1][2]};
         for (int p = 0; p < 6; ++p)
           for (int i = 0; i < lifted.columns; ++i)
-            for (int j = 0; j < lifted.columns; ++j) sum += s[p] * x[i] * lifted.energy(p, i, j) * x[j];
+            for (int j = 0; j < lifted.columns; ++j) sum += s[p] * x[i] * lifted.energy(p, i, j) * x[j] / thickness;
       },
       squared);
   return std::sqrt(std::max(sum_all(comm, squared), 0.));
 }
+
+namespace
+{
+
+/// Of a point of a table in a body of revolution; 0 in others.
+KOKKOS_INLINE_FUNCTION double radius(const CellInput &in, const LO c, const fem::BasisTable &table, const int q)
+{
+  double r = 0;
+  for (int a = 0; a < static_cast<int>(in.cells.extent(1)) && in.of_revolution(); ++a)
+    r += table.value(q, a) * in.coords(in.cells(c, a), 0);
+  return r;
+}
+
+} // namespace
 
 DeviceView<double ***> nodal_forces(const CellInput &in, const fem::Discretization &d, const Vector &u)
 {
@@ -289,14 +319,17 @@ DeviceView<double ***> nodal_forces(const CellInput &in, const fem::Discretizati
         const AffineCell cell(in, c);
         const double lambda = in.lame(in.block(c), 0), mu = in.lame(in.block(c), 1);
         for (int q = 0; q < stress.num_points(); ++q) {
-          double H[2][2] = {}, D[2][2] = {};
+          double H[2][2] = {}, D[2][2] = {}, hoop = 0; // the latter u_r/r
+          const double r = radius(in, c, stress, q);
+          for (int a = 0; a < nodes && r > 0; ++a) hoop += x(dof(2, in.cells(c, a), 0)) * stress.value(q, a) / r;
           for (int a = 0; a < nodes; ++a)
             for (int i = 0; i < 2; ++i)
               for (int l = 0; l < 2; ++l) H[i][l] += x(dof(2, in.cells(c, a), i)) * stress.gradient(q, a, l);
           for (int i = 0; i < 2; ++i)
             for (int j = 0; j < 2; ++j)
               for (int l = 0; l < 2; ++l) D[i][j] += H[i][l] * cell.inverse[l][j];
-          const double trace = D[0][0] + D[1][1], w = stress.weight(q) * cell.determinant;
+          const double trace = D[0][0] + D[1][1] + hoop,
+                       w = stress.weight(q) * cell.determinant * (r > 0 ? 2 * Circle::pi * r : 1);
           const double s[2][2] = {{lambda * trace + 2 * mu * D[0][0], mu * (D[0][1] + D[1][0])},
                                   {mu * (D[0][1] + D[1][0]), lambda * trace + 2 * mu * D[1][1]}};
           for (int a = 0; a < nodes; ++a)
@@ -305,11 +338,16 @@ DeviceView<double ***> nodal_forces(const CellInput &in, const fem::Discretizati
                   stress.gradient(q, a, 0) * cell.inverse[0][j] + stress.gradient(q, a, 1) * cell.inverse[1][j];
               for (int i = 0; i < 2; ++i) Q(c, a, i) += w * s[i][j] * dN;
             }
+          for (int a = 0; a < nodes && r > 0; ++a)
+            Q(c, a, 0) += w * (lambda * trace + 2 * mu * hoop) * stress.value(q, a) / r;
         }
-        for (int q = 0; loaded && q < load.num_points(); ++q)
+        for (int q = 0; loaded && q < load.num_points(); ++q) {
+          const double r = radius(in, c, load, q);
           for (int a = 0; a < nodes; ++a)
             for (int i = 0; i < 2; ++i)
-              Q(c, a, i) -= load.weight(q) * cell.determinant * load.value(q, a) * in.force[i];
+              Q(c, a, i) -=
+                  load.weight(q) * cell.determinant * load.value(q, a) * in.force[i] * (r > 0 ? 2 * Circle::pi * r : 1);
+        }
       });
   Kokkos::fence();
   return Q;
@@ -331,7 +369,14 @@ DeviceView<double ***> mean_moments(const CellInput &in, const Vector &u)
           const LO from = in.cells(c, s), to = in.cells(c, (s + 1) % sides);
           const double n[2] = {in.coords(to, 1) - in.coords(from, 1), in.coords(from, 0) - in.coords(to, 0)};
           for (int q = 0; q < 3; ++q) {
-            double H[2][2] = {}, D[2][2] = {};
+            const double y = in.reference.side_point(q);
+            const double r = in.of_revolution() ? (1 - y) * in.coords(from, 0) + y * in.coords(to, 0) : 0;
+            double H[2][2] = {}, D[2][2] = {}, u_r = 0;
+            if (r > 0) {
+              const double ends = order == 1 ? 1 - y : (1 - y) * (1 - 2 * y), other = order == 1 ? y : y * (2 * y - 1);
+              u_r = ends * x(dof(2, from, 0)) + other * x(dof(2, to, 0));
+              if (order == 2) u_r += 4 * y * (1 - y) * x(dof(2, in.cells(c, sides + s), 0));
+            }
             for (int a = 0; a < nodes; ++a)
               for (int i = 0; i < 2; ++i)
                 for (int l = 0; l < 2; ++l)
@@ -339,10 +384,10 @@ DeviceView<double ***> mean_moments(const CellInput &in, const Vector &u)
             for (int i = 0; i < 2; ++i)
               for (int j = 0; j < 2; ++j)
                 for (int l = 0; l < 2; ++l) D[i][j] += H[i][l] * cell.inverse[l][j];
-            const double trace = D[0][0] + D[1][1], shear = mu * (D[0][1] + D[1][0]);
+            const double trace = D[0][0] + D[1][1] + (r > 0 ? u_r / r : 0), shear = mu * (D[0][1] + D[1][0]);
             const double t[2] = {(lambda * trace + 2 * mu * D[0][0]) * n[0] + shear * n[1],
                                  shear * n[0] + (lambda * trace + 2 * mu * D[1][1]) * n[1]};
-            const double y = in.reference.side_point(q), w = in.reference.side_weight(q) / both;
+            const double w = in.reference.side_weight(q) / both * (in.of_revolution() ? 2 * Circle::pi * r : 1);
             for (int e = 0; e < 2; ++e) { // the functions of the vertices, in the direction of the cell
               const double z = e == 0 ? 1 - y : y, N = order == 1 ? z : z * (2 * z - 1);
               const int end = side == 0 ? e : 1 - e;

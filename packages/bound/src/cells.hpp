@@ -26,6 +26,14 @@ CellForms cell_forms(const CellInput &in, const Vector &u);
 void add_up(const CellInput &in, const CellForms &forms, const Tractions &t, bool linear,
             const DeviceView<double **> &scratch, const Tractions &sum);
 
+/// Bounds of a(u, u) [J]: where it is an integral of polynomials both are this integral.
+struct Squared {
+  double lower = 0, upper = 0;
+  Squared() = default;
+  Squared(const double exact) : lower(exact), upper(exact) {}
+  Squared(const double low, const double high) : lower(low), upper(high) {}
+};
+
 /// What the stresses of tractions leave, on all ranks.
 struct StressDifference {
   double energy = 0;    ///< |sigma - C eps(u)|^2 / 2 over the body [J], in 2D per m

@@ -16,6 +16,9 @@ std::string without_press(const ContactFacets &c)
 {
   for (const std::array<double, 2> &nu : c.normal)
     if (std::abs(nu[0] - c.normal[0][0]) + std::abs(nu[1] - c.normal[0][1]) > 1e-10) return "the side's normals differ";
+  for (const OfFacet &circle : c.circle)
+    if (std::min(circle[0], circle[c.order]) == 0 && std::abs(c.normal[0][0]) > 1e-10)
+      return "the side meets the axis at an angle";
   return "";
 }
 std::string without_press(const SpaceContact &c)
@@ -23,13 +26,24 @@ std::string without_press(const SpaceContact &c)
   return has_facets(c) ? "" : "the side has no facets";
 }
 
-const std::vector<double> &sizes_of(const ContactFacets &c)
+/// The length of a facet, of revolution the area on its middle circle; the area in space.
+double size_of(const ContactFacets &c, const std::size_t f)
 {
-  return c.length;
+  return c.length[f] * (c.circle.empty() ? 1 : (c.circle[f][0] + c.circle[f][c.order]) / 2);
 }
-const std::vector<double> &sizes_of(const SpaceContact &c)
+double size_of(const SpaceContact &c, const std::size_t f)
 {
-  return c.area;
+  return c.area[f];
+}
+
+/// No less than the size that a part of a facet counts with: of revolution on its larger circle.
+double most_size_of(const ContactFacets &c, const std::size_t f)
+{
+  return c.length[f] * (c.circle.empty() ? 1 : std::max(c.circle[f][0], c.circle[f][c.order]));
+}
+double most_size_of(const SpaceContact &c, const std::size_t f)
+{
+  return c.area[f];
 }
 
 /// Parts of a facet's size that are no less than the integrals of the positive and of the negative part of 1 - w_nu, the sum of the element's
@@ -85,8 +99,8 @@ UnitPress unit_press(const analysis::Problem &problem, const double time, const 
   };
   for (std::size_t f = 0; f < c.facet.size() && !cut.empty(); ++f) {
     const Missed of = missed(c, f, is_cut);
-    press.high += most * sizes_of(c)[f] * of.positive;
-    press.low -= most * sizes_of(c)[f] * of.negative;
+    press.high += most * most_size_of(c, f) * of.positive;
+    press.low -= most * most_size_of(c, f) * of.negative;
   }
   solve_press(problem, time, sides, k, cut, options, press);
   return press;
@@ -96,7 +110,7 @@ template <class Side>
 double largest_force(const Side &c)
 {
   double size = 0;
-  for (const double of_facet : sizes_of(c)) size += of_facet;
+  for (std::size_t f = 0; f < c.facet.size(); ++f) size += size_of(c, f);
   return size * largest_pressure(c);
 }
 

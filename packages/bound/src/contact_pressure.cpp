@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact_pressure.hpp"
 
+#include "beside_inverse.hpp"
 #include "gauss.hpp"
 #include "rpc/contact/law/foundation.hpp"
 #include "traction_fit.hpp"
@@ -42,12 +43,12 @@ public:
     if (p.c2 != 0) add(q / p.c2);
     if (q != 0) add(p.c0 / q);
   }
-  /// Sum of w f(x), exact where f is a polynomial of degree 5 within each part.
+  /// Sum of w f(x), exact where f is a polynomial of degree 2 n - 1 within each part.
   template <class Function>
-  void integrate(const Function &f)
+  void integrate(const int n, const Function &f)
   {
     std::sort(at_.begin(), at_.end());
-    const Gauss rule = gauss(3);
+    const Gauss rule = gauss(n);
     for (std::size_t k = 0; k + 1 < at_.size(); ++k)
       for (std::size_t q = 0; q < rule.point.size(); ++q)
         f(at_[k] + rule.point[q] * (at_[k + 1] - at_[k]), rule.weight[q] * (at_[k + 1] - at_[k]));
@@ -89,6 +90,13 @@ std::vector<OfFacet> fitted_pressure(const ContactFacets &c, const std::vector<O
     wanted.near.push_back(bernstein(c.order, c.pressure[e]));
     wanted.low.push_back({});
     wanted.high.push_back(c.limit_of[e]);
+    if (c.circle.empty()) continue;
+    wanted.none.push_back({});
+    for (int a = 0; a <= c.order; ++a) {
+      wanted.none[e][a] = c.circle[e][a] == 0;
+      wanted.high[e][a] = wanted.none[e][a] ? 0 : wanted.high[e][a] * c.circle[e][a];
+      if (wanted.none[e][a]) wanted.near[e][a] = 0;
+    }
   }
   return fitted_traction(c, wanted);
 }
@@ -115,13 +123,19 @@ ContactIntegrals contact_integrals(const int order, const OfFacet &v, const OfFa
   if (!rigid) {
     parts.end_at_roots_of(limit);
     parts.end_at_roots_of(depth.plus(-law.spring, limit));
-    parts.end_at_roots_of(pressure.plus(-1, limit));
+    OfFacet most = law.limit;
+    for (int a = 0; a <= order && law.circle; ++a) most[a] *= (*law.circle)[a]; // the limit is even there
+    parts.end_at_roots_of(pressure.plus(-1, Polynomial(order, most)));
   }
+  const Polynomial circle(order, law.circle.value_or(OfFacet{}));
+  const double nearest = std::min(circle(0), circle(1)), farthest = std::max(circle(0), circle(1));
   ContactIntegrals sum;
-  parts.integrate([&](const double x, const double w) {
-    const contact::Foundation f{rigid ? law.limit[0] : std::max(0., limit(x)), law.rise, law.spring};
-    const double deep = depth(x), p_here = std::max(0., pressure(x));
-    sum.add(w, deep, p_here, f, rigid && law.spring == 0);
+  parts.integrate(law.circle ? 6 : 3, [&](const double x, const double w) {
+    const double deep = depth(x), p_here = std::max(0., pressure(x)), here = law.circle ? circle(x) : 1;
+    const double yield = rigid ? law.limit[0] : here * std::max(0., limit(x));
+    const contact::Foundation f{yield, law.rise * here, law.spring / here}; // (13.10d)
+    const double of_conjugate = law.circle && nearest > 0 ? here * beside_inverse(here, nearest, farthest, true) : 1;
+    sum.add(w, deep, p_here, f, rigid && law.spring == 0, of_conjugate);
   });
   return sum;
 }
@@ -132,7 +146,7 @@ ContactIntegrals friction_integrals(const int order, const OfFacet &slip, const 
   Parts parts;
   parts.end_at_roots_of(e);
   ContactIntegrals sum;
-  parts.integrate([&](const double x, const double w) {
+  parts.integrate(3, [&](const double x, const double w) {
     sum.energy += w * s(x) * std::abs(e(x));
     sum.gap += w * std::max(0., s(x) * std::abs(e(x)) - q(x) * e(x));
   });

@@ -6,6 +6,7 @@
 #include "side_terms.hpp"
 
 #include <array>
+#include <optional>
 #include <vector>
 
 /// What is of the size of the boundary only: on the host.
@@ -42,7 +43,9 @@ struct ContactFacets {
   double rise = 0;               ///< H [Pa/m]
   double spring = 0;             ///< c of the foundation's springs [m/Pa]
   FrictionFacets friction;
-  double modulus = 1;                        ///< E of the body [Pa]
+  double modulus = 1; ///< E of the body [Pa]
+  /// (facets) Of a body of revolution: Bernstein coefficients of 2 pi r, which pressures, friction and E then count [m]; else empty.
+  std::vector<OfFacet> circle;
   std::vector<LO> facet;                     ///< numbers of the facets on this rank; -1: it has it not
   std::vector<double> length;                ///< (facets) [m]
   std::vector<std::array<double, 2>> normal; ///< (facets) of the contact law
@@ -76,13 +79,15 @@ std::vector<OfFacet> fitted_pressure(const ContactFacets &c, const std::vector<O
 /// @param slip  (facets) at the nodes [m]
 std::vector<OfFacet> fitted_friction(const ContactFacets &c, const std::vector<OfFacet> &slip);
 
-/// The law of a facet: Bernstein coefficients of its yield limit, H and c.
+/// The law of a facet: Bernstein coefficients of its yield limit, H and c, and of bodies of revolution those of 2 pi r.
 struct NormalLaw {
   OfFacet limit{};
   double rise = 0, spring = 0;
+  std::optional<OfFacet> circle;
 };
 
-/// Over a facet of unit length; v <= 0 where the foundation is rigid.
+/// Over a facet of unit length; v <= 0 where the foundation is rigid. Of bodies of revolution p counts 2 pi r, and the gap is no smaller than
+/// the integral, which is one of a rational function.
 /// @param p  Bernstein coefficients, those of an admissible pressure
 ContactIntegrals contact_integrals(int order, const OfFacet &v, const OfFacet &p, const NormalLaw &law);
 /// @param slip  at the nodes   @param traction, limit  Bernstein coefficients

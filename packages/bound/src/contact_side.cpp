@@ -78,8 +78,9 @@ void add_friction(const contact::ContactOptions &options, const std::vector<Side
 }
 
 /// The numbers of this rank's points of a side, along the side's tangent where they are vectors.
+/// @param on_axis  of a body of revolution, nodes with r up to this lie on the axis; else -1
 std::vector<SidePoint> own_points(const contact::ContactNodes &points, const int k, const OnHost &host,
-                                  const PointTractions &solution)
+                                  const PointTractions &solution, const double on_axis)
 {
   const auto node = to_host(points.node);
   const auto weight = to_host(points.weight), gap = to_host(points.gap), dent = to_host(points.dent);
@@ -104,6 +105,12 @@ std::vector<SidePoint> own_points(const contact::ContactNodes &points, const int
       p.place[d] = host.coords(node(i), d);
       p.normal[d] = normal(i, d);
       p.direction[d] = direction(i, d);
+    }
+    if (on_axis >= 0 &&
+        host.coords(node(i), 0) <= on_axis) { // of order 2 contact does not see this node, which may lie too deep
+      p.direction[0] = p.fixed = 0;
+      p.direction[1] = p.normal[1];
+      p.free_gap = p.gap + p.dent;
     }
     const auto along = tangent_of({p.normal[0], p.normal[1]});
     for (int d = 0; d < 2 && rubs; ++d) p.slip_from += along[d] * from(i, d);
@@ -142,6 +149,29 @@ std::vector<SideFacet> own_facets(const analysis::Problem &problem, const OnHost
   return all;
 }
 
+/// Tractions of a body of revolution are those of S = 2 pi r s, with the limits of friction.
+void multiply_by_circles(const double on_axis, const contact::ContactOptions &options, ContactFacets &c)
+{
+  double mean = 0;
+  for (std::size_t e = 0; e < c.facet.size(); ++e) {
+    double r[2];
+    for (int end = 0; end < 2; ++end) r[end] = c.ends[e][end][0] <= on_axis ? 0 : around(true, c.ends[e][end][0]);
+    const double middle = (r[0] + r[1]) / 2;
+    mean += middle / static_cast<double>(c.facet.size());
+    const OfFacet at_nodes{r[0], r[1], middle};
+    c.circle.push_back(c.order == 1 ? OfFacet{r[0], r[1], 0} : OfFacet{r[0], middle, r[1]});
+    for (int a = 0; a <= c.order; ++a) {
+      c.pressure[e][a] *= at_nodes[a];
+      RPC_REQUIRE(c.limit_of[e][a] == c.limit_of[0][0] || contact::is_rigid(c.limit_of[0][0]),
+                  not_covered(options, "dents of earlier steps under a body of revolution have hardened it"));
+      if (!c.friction.acts) continue;
+      c.friction.traction[e][a] *= at_nodes[a];
+      c.friction.limit_of[e][a] *= c.circle[e][a];
+    }
+  }
+  c.modulus *= mean;
+}
+
 } // namespace
 
 double law(const contact::ContactOptions &options, const int parameter)
@@ -167,13 +197,14 @@ ContactFacets contact_side(const analysis::Problem &problem, const analysis::Mod
 {
   const contact::ContactOptions &options = model.contact[k];
   const Comm &comm = host.mesh.comm();
+  const fem::Discretization &d = problem.discretization();
   ContactFacets c;
   c.order = host.mesh.element.order;
   c.rise = law(options, 1);
   c.spring = 1 / law(options, 2);
   const std::vector<LO> local = host.facets_of(host.mesh.side(options.side, options.path));
   std::vector<SideFacet> facets = rows_of_all(comm, own_facets(problem, host, local, prescribed));
-  c.points = rows_of_all(comm, own_points(step.contact, k, host, solution));
+  c.points = rows_of_all(comm, own_points(step.contact, k, host, solution, d.axisymmetric() ? d.on_axis : -1));
   if (facets.empty()) return c;
   std::array<double, 2> along{facets[0].ends[1][0] - facets[0].ends[0][0], facets[0].ends[1][1] - facets[0].ends[0][1]};
   const double size = std::hypot(along[0], along[1]);
@@ -240,6 +271,7 @@ ContactFacets contact_side(const analysis::Problem &problem, const analysis::Mod
       if (blocks_at[c.point[e][a]].size() > 1)
         c.pressure[e][a] = c.order == 1 ? c.pressure[e][1 - a] : 2 * c.pressure[e][2] - c.pressure[e][1 - a];
   require_represented_gap(options, comm, c, gaps);
+  if (d.axisymmetric()) multiply_by_circles(d.on_axis, options, c);
   return c;
 }
 

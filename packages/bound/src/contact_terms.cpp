@@ -104,7 +104,12 @@ ContactTerms contact_terms(const std::vector<ContactFacets> &sides, const mesh::
     for (std::size_t f = 0; f < c.facet.size(); ++f) {
       if (never_gives_way(c) && *std::max_element(v[f].begin(), v[f].end()) > 0)
         terms.missing = "the body lies in a rigid foundation";
-      ContactIntegrals sum = contact_integrals(c.order, v[f], t.pressure[f], {c.limit_of[f], c.rise, c.spring});
+      NormalLaw law{c.limit_of[f], c.rise, c.spring, {}};
+      if (!c.circle.empty()) law.circle = c.circle[f];
+      for (int a = 0; a <= c.order && law.circle; ++a)
+        if (c.circle[f][a] == 0 && (t.pressure[f][a] != 0 || (c.friction.acts && t.friction[f][a] != 0)))
+          terms.missing = "a traction of contact acts on the axis";
+      ContactIntegrals sum = contact_integrals(c.order, v[f], t.pressure[f], law);
       if (c.friction.acts) {
         const ContactIntegrals rub = friction_integrals(c.order, e[f], t.friction[f], c.friction.limit_of[f]);
         sum.energy += rub.energy;

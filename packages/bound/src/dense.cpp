@@ -27,6 +27,14 @@ Dense transposed(const Dense &x)
   return z;
 }
 
+Dense stacked(const Dense &x, const Dense &y)
+{
+  Dense z(x.rows + y.rows, x.cols);
+  std::copy(x.a.begin(), x.a.end(), z.a.begin());
+  std::copy(y.a.begin(), y.a.end(), z.a.begin() + static_cast<std::ptrdiff_t>(x.a.size()));
+  return z;
+}
+
 Kernel kernel_of(const Dense &x)
 {
   const int m = x.rows, n = x.cols;

@@ -20,6 +20,8 @@ struct Dense {
 
 Dense product(const Dense &x, const Dense &y);
 Dense transposed(const Dense &x);
+/// The rows of x, then those of y.
+Dense stacked(const Dense &x, const Dense &y);
 
 /// A basis of what x maps to 0, in columns, and the inverse of x on the rest.
 struct Kernel {

@@ -1,228 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "reference_stress.hpp"
 
-#include "dense.hpp"
-#include "facet_polynomials.hpp"
-#include "gauss.hpp"
 #include "rpc/core/device_values.hpp"
-#include "rpc/core/error.hpp"
 #include "rpc/fem/basis.hpp"
 #include "rpc/mesh/quadrature.hpp"
+#include "split_cell.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
 namespace rpc::bound
 {
 namespace
 {
-
-using Place = std::array<double, 3>; // in the plane the last one is 0
-
-Place difference(const Place &a, const Place &b)
-{
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-double along_of(const Place &a, const Place &b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/// Of symmetric stresses xx yy xy, or xx yy zz yz xz xy.
-int component_of(const int dim, const int i, const int j)
-{
-  if (i == j) return i;
-  return dim == 2 ? 2 : 6 - i - j;
-}
-
-/// The reference cell, split, with the stresses of some degree. Part s is what the centre makes with facet s.
-struct SplitCell {
-  int dim, sides, degree, monomials, components;
-  std::vector<Place> vertex;           // relative to the centre
-  std::vector<std::vector<int>> facet; // its vertices
-  std::vector<std::array<int, 3>> power;
-  Place centre{};
-
-  SplitCell(const mesh::Element &element, const int k)
-      : dim(element.dim), sides(element.num_facets()), degree(k), components(dim * (dim + 1) / 2)
-  {
-    for (int v = 0; v < element.num_vertices(); ++v) {
-      Place x{};
-      for (int d = 0; d < dim; ++d) {
-        const double on_lattice = element.lattice()[v][d];
-        x[d] = element.shape == mesh::Shape::simplex ? on_lattice / element.order : 2 * on_lattice / element.order - 1;
-        centre[d] += x[d] / element.num_vertices();
-      }
-      vertex.push_back(x);
-    }
-    for (Place &x : vertex)
-      for (int d = 0; d < dim; ++d) x[d] -= centre[d];
-    for (int s = 0; s < sides; ++s) {
-      RPC_REQUIRE_CODE(dim == 3 || (element.facets()[s][0] == s && element.facets()[s][1] == (s + 1) % sides),
-                       ExitCode::internal_error,
-                       "bound: side " << s << " of " << element.name() << " does not follow its vertex");
-      facet.push_back({});
-      for (int v = 0; v < element.num_vertices(); ++v) // of tetrahedra side s lies opposite vertex s
-        if (dim == 3 && v != s) facet[s].push_back(v);
-      if (dim == 2) facet[s] = {s, (s + 1) % sides};
-    }
-    for (int n = 0; n <= k; ++n)
-      for (int b = 0; b <= n; ++b)
-        for (int c = 0; c <= (dim == 3 ? b : 0); ++c) power.push_back({n - b, b - c, c});
-    monomials = static_cast<int>(power.size());
-  }
-  int coefficients() const { return components * sides * monomials; }
-  int at(const int part, const int component, const int m) const
-  {
-    return (part * components + component) * monomials + m;
-  }
-  double monomial(const int m, const Place &x) const
-  {
-    return std::pow(x[0], power[m][0]) * std::pow(x[1], power[m][1]) * std::pow(x[2], power[m][2]);
-  }
-  Place on_facet(const int s, const Barycentric &at) const
-  {
-    Place x{};
-    for (int v = 0; v < dim; ++v)
-      for (int d = 0; d < dim; ++d) x[d] += at[v] * vertex[facet[s][v]][d];
-    return x;
-  }
-  /// Normal of a line or a triangle by its corners, as long as its size.
-  Place normal_of(const Place &a, const Place &b, const Place &c) const
-  {
-    const Place e = difference(b, a), f = difference(c, a);
-    if (dim == 2) return {e[1], -e[0], 0};
-    return {(e[1] * f[2] - e[2] * f[1]) / 2, (e[2] * f[0] - e[0] * f[2]) / 2, (e[0] * f[1] - e[1] * f[0]) / 2};
-  }
-  /// Outward.
-  Place normal(const int s) const
-  {
-    const Place &a = vertex[facet[s][0]];
-    Place n = normal_of(a, vertex[facet[s][1]], vertex[facet[s][dim - 1]]);
-    const double toward = along_of(n, a) > 0 ? 1 : -1;
-    for (double &x : n) x *= toward;
-    return n;
-  }
-  /// row(s) += factor * (component of s n) at a point of a part.
-  void add_traction(Dense &rows, const int row, const int part, const int component, const Place &x, const Place &n,
-                    const double factor) const
-  {
-    for (int d = 0; d < dim; ++d)
-      for (int m = 0; m < monomials; ++m)
-        rows(row, at(part, component_of(dim, component, d), m)) += factor * n[d] * monomial(m, x);
-  }
-};
-
-/// Where two parts meet: the corners that they have in common besides the centre.
-struct Interface {
-  int part[2];
-  std::vector<int> vertices;
-};
-
-std::vector<Interface> interfaces(const SplitCell &c)
-{
-  std::vector<Interface> all;
-  for (int s = 0; s < c.sides; ++s)
-    for (int r = 0; r < s; ++r) {
-      Interface common{{s, r}, {}};
-      for (const int v : c.facet[s])
-        if (std::find(c.facet[r].begin(), c.facet[r].end(), v) != c.facet[r].end()) common.vertices.push_back(v);
-      if (static_cast<int>(common.vertices.size()) == c.dim - 1) all.push_back(common);
-    }
-  return all;
-}
-
-/// Points that determine polynomials of degree k on the line or the triangle from the centre to these vertices.
-std::vector<Place> lattice_points(const SplitCell &c, const std::vector<int> &vertices)
-{
-  std::vector<Place> all;
-  const double k = c.degree;
-  for (int i = 0; i <= c.degree; ++i)
-    for (int j = 0; j <= (c.dim == 3 ? c.degree - i : 0); ++j) {
-      Place x{};
-      for (int d = 0; d < c.dim; ++d) {
-        x[d] = i / k * c.vertex[vertices[0]][d];
-        if (c.dim == 3) x[d] += j / k * c.vertex[vertices[1]][d];
-      }
-      all.push_back(x);
-    }
-  return all;
-}
-
-/// Jumps of tractions across the inner lines or triangles, and the polynomials of the divergence.
-Dense conditions(const SplitCell &c)
-{
-  const std::vector<Interface> inner = interfaces(c);
-  const auto lower = [&](const std::array<int, 3> &power) { return power[0] + power[1] + power[2] < c.degree; };
-  const int of_divergence = static_cast<int>(std::count_if(c.power.begin(), c.power.end(), lower)),
-            points = FacetPolynomials::count(c.dim, c.degree);
-  Dense rows(c.dim * (static_cast<int>(inner.size()) * points + c.sides * of_divergence), c.coefficients());
-  int row = 0;
-  for (const Interface &between : inner) {
-    const Place n = c.normal_of({}, c.vertex[between.vertices[0]], c.vertex[between.vertices[c.dim - 2]]);
-    for (const Place &x : lattice_points(c, between.vertices))
-      for (int component = 0; component < c.dim; ++component, ++row) {
-        c.add_traction(rows, row, between.part[0], component, x, n, 1);
-        c.add_traction(rows, row, between.part[1], component, x, n, -1);
-      }
-  }
-  for (int part = 0; part < c.sides; ++part)
-    for (int component = 0; component < c.dim; ++component) {
-      for (int m = 0; m < c.monomials; ++m)
-        for (int d = 0; d < c.dim; ++d) {
-          std::array<int, 3> power = c.power[m];
-          if (power[d]-- == 0) continue;
-          const auto found = std::find(c.power.begin(), c.power.end(), power);
-          rows(row + static_cast<int>(found - c.power.begin()), c.at(part, component_of(c.dim, component, d), m)) +=
-              c.power[m][d];
-        }
-      row += of_divergence;
-    }
-  return rows;
-}
-
-/// Coefficients of the tractions times the sizes of facets, by the polynomials of each.
-Dense tractions_of(const SplitCell &c)
-{
-  const FacetPolynomials polynomials(c.dim, c.degree);
-  Dense rows(c.dim * polynomials.size() * c.sides, c.coefficients());
-  const FacetRule rule = facet_rule(c.dim, c.degree + 1);
-  int row = 0;
-  for (int s = 0; s < c.sides; ++s)
-    for (int j = 0; j < polynomials.size(); ++j)
-      for (int component = 0; component < c.dim; ++component, ++row)
-        for (int q = 0; q < rule.size(); ++q)
-          c.add_traction(rows, row, s, component, c.on_facet(s, rule.point[q]), c.normal(s),
-                         rule.weight[q] * polynomials(j, rule.point[q]) / polynomials.square(j));
-  return rows;
-}
-
-/// Points of each part.
-struct PartPoints {
-  std::vector<Place> point; // (sides * points)
-  std::vector<double> weight;
-};
-/// Exact for polynomials up to degree 2 n - dim.
-PartPoints part_points(const SplitCell &c, const int n)
-{
-  PartPoints p;
-  const Gauss line = gauss(n);
-  const FacetRule across = facet_rule(c.dim, n);
-  for (int s = 0; s < c.sides; ++s) {
-    const double volume = along_of(c.normal(s), c.vertex[c.facet[s][0]]); // times dim
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < across.size(); ++j) {
-        const double r = line.point[i];
-        const Place x = c.on_facet(s, across.point[j]);
-        p.point.push_back({r * x[0], r * x[1], r * x[2]});
-        p.weight.push_back(line.weight[i] * across.weight[j] * (c.dim == 2 ? r : r * r) * volume);
-      }
-  }
-  return p;
-}
 
 /// int s_c t_d over the cell, as a matrix between coefficients.
 class Masses
@@ -277,20 +68,10 @@ EnergyTable energies(const SplitCell &c, const Dense &stress)
   return table;
 }
 
-/// Stresses of the tractions and inner ones, in columns.
-struct Columns {
-  Dense of_tractions, inner;
-};
+/// Stresses without divergence.
 Columns columns_of(const SplitCell &c)
 {
-  const Dense admissible = kernel_of(conditions(c)).basis;
-  const Kernel k = kernel_of(product(tractions_of(c), admissible));
-  const int rank = admissible.cols - k.basis.cols,
-            wanted = c.dim * FacetPolynomials::count(c.dim, c.degree) * c.sides - (c.dim == 2 ? 3 : 6);
-  RPC_REQUIRE_CODE(rank == wanted, ExitCode::internal_error,
-                   "bound: stresses of degree " << c.degree << " have " << rank << " independent tractions instead of "
-                                                << wanted);
-  return {product(admissible, k.inverse), product(admissible, k.basis)};
+  return columns_of(c, kernel_of(stacked(jumps_in(c), divergence_in(c))).basis, c.dim == 2 ? 3 : 6);
 }
 
 template <class View = DeviceView<double **>>

@@ -77,6 +77,12 @@ struct OnHost {
   }
 };
 
+/// What integrals over the section are to be multiplied with: of a body of revolution the circle that a point describes [m].
+inline double around(const bool revolution, const double r)
+{
+  return revolution ? 2 * std::acos(-1.) * r : 1;
+}
+
 /// What the elements make of values at the ends and in the middle of a facet, at a point of it.
 inline double at_point(const int order, const OfFacet &g, const double s)
 {

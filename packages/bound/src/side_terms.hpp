@@ -16,9 +16,9 @@ namespace rpc::bound
 struct ContactIntegrals {
   double energy = 0, gap = 0;
 
-  /// A point of weight w. @param deep  penetration [m]   @param pressure  >= 0 [Pa]
+  /// A point of weight w. @param deep  penetration [m]   @param pressure  >= 0 [Pa]   @param of_conjugate  factor >= 1 of psi*(p)
   void add(const double w, const double deep, const double pressure, const contact::Foundation &f,
-           const bool never_gives_way)
+           const bool never_gives_way, const double of_conjugate = 1)
   {
     if (never_gives_way) { // there is no penetration
       gap += w * pressure * std::max(0., -deep);
@@ -26,7 +26,7 @@ struct ContactIntegrals {
     }
     const double of_foundation = contact::foundation_energy(deep, f);
     energy += w * of_foundation;
-    gap += w * std::max(0., of_foundation + contact::conjugate_energy(pressure, f) - pressure * deep);
+    gap += w * std::max(0., of_foundation + of_conjugate * contact::conjugate_energy(pressure, f) - pressure * deep);
   }
 };
 

@@ -8,19 +8,26 @@ namespace
 
 /// The modes of a star, as kernels see them.
 struct StarModes {
-  static constexpr int most = 6; ///< on a spoke: force, force, moment, and up to three without a wrench
+  static constexpr int most = 6; ///< on a spoke: those that all hand on, and its own
   CellInput in;
   BoundaryTractions boundary;
 
-  KOKKOS_FUNCTION int own() const { return in.reference.degree == 1 ? 1 : 3; } ///< modes of each spoke
+  /// Modes that all spokes hand on: two forces and a moment, of a body of revolution the force along its axis.
+  KOKKOS_FUNCTION int num_common() const { return in.of_revolution() ? 1 : 3; }
+  KOKKOS_FUNCTION int of_each() const { return num_common() + own(); }
+  KOKKOS_FUNCTION int own() const ///< modes of each spoke
+  {
+    if (in.of_revolution()) return 2 * in.reference.degree + 1;
+    return in.reference.degree == 1 ? 1 : 3;
+  }
   KOKKOS_FUNCTION int size(const LO node) const
   {
     const int spokes = in.facets.num_spokes(node);
-    return spokes == 0 ? 0 : 3 + own() * spokes;
+    return spokes == 0 ? 0 : num_common() + own() * spokes;
   }
   KOKKOS_FUNCTION std::size_t first(const LO node) const
   {
-    return 3 * static_cast<std::size_t>(node) + own() * in.facets.first_spoke(node);
+    return num_common() * static_cast<std::size_t>(node) + own() * in.facets.first_spoke(node);
   }
 
   /// Components of the traction on a spoke that are free: 0, 1, or 2 for both; -1: none.
@@ -64,6 +71,10 @@ struct StarModes {
     const LO f = in.facets.spoke(at);
     const int free = free_components(f), degree = in.reference.degree;
     if (free < 0) return;
+    if (in.of_revolution()) {
+      modes_of_revolution(node, f, in.facets.toward(at), M);
+      return;
+    }
     double e[2];
     vector_of(node, f, e);
     const double squared = e[0] * e[0] + e[1] * e[1], size = math::sqrt(squared), toward = in.facets.toward(at);
@@ -93,6 +104,30 @@ struct StarModes {
     if (may[2]) M[2 + free][2] = 6 * odd * scale(node) / moment;
     if (degree == 2) M[4 + free][4] = toward;
   }
+  /// The force along the axis, as far as both ends of the star can hand it on, and all tractions without it; those of a facet that ends on the
+  /// axis vanish there.
+  KOKKOS_FUNCTION void modes_of_revolution(const LO node, const LO f, const double toward, double (&M)[6][most]) const
+  {
+    const int degree = in.reference.degree, spokes = in.facets.num_spokes(node);
+    const bool first = in.coords(in.facets.node(f, 0), 0) <= in.on_axis,
+               second = in.coords(in.facets.node(f, 1), 0) <= in.on_axis;
+    if (first && second) return;
+    bool hands_on = true;
+    if (spokes != in.facets.num_cells(node))
+      for (int k = 0; k < spokes; k += spokes - 1) {
+        const LO end = in.facets.spoke(in.facets.first_spoke(node) + k);
+        hands_on = hands_on && !(in.facets.on_boundary(end) && boundary.known(end, 1));
+      }
+    for (int i = 0; i < 2; ++i) {
+      if (in.facets.on_boundary(f) && boundary.known(f, i)) continue;
+      for (int j = 0; j <= degree; ++j) {
+        const int mode = i == 1 && j == 0 ? 0 : (i == 0 ? 1 + j : 1 + degree + j);
+        if ((mode == 0 && !hands_on) || (j == 1 && (first || second))) continue;
+        M[2 * j + i][mode] = toward;
+        if (first || second) M[2 + i][mode] = first ? toward : -toward; // P_j is 1 or -1 at the ends
+      }
+    }
+  }
   /// The unit of moments: a length of the star.
   KOKKOS_FUNCTION double scale(const LO node) const
   {
@@ -101,7 +136,10 @@ struct StarModes {
     return math::sqrt(e[0] * e[0] + e[1] * e[1]);
   }
   /// The place of a spoke's mode among those of its star.
-  KOKKOS_FUNCTION int place(const int k, const int mode) const { return mode < 3 ? mode : 3 + own() * k + mode - 3; }
+  KOKKOS_FUNCTION int place(const int k, const int mode) const
+  {
+    return mode < num_common() ? mode : num_common() + own() * k + mode - num_common();
+  }
 };
 
 /// The energy of each star in its modes, and its Cholesky factor.
@@ -114,7 +152,7 @@ struct FactorStars {
   KOKKOS_FUNCTION void add_cell(const LO node, const int k, const int n, double *H) const
   {
     const CellInput &in = modes.in;
-    const int spokes = in.facets.num_spokes(node), per_facet = 2 * (in.reference.degree + 1), both = 3 + modes.own();
+    const int spokes = in.facets.num_spokes(node), per_facet = 2 * (in.reference.degree + 1), both = modes.of_each();
     const int spoke[2] = {k, (k + 1) % spokes};
     const LO c = in.facets.star_cell(in.facets.first(node) + k);
     const int corner = in.facets.star_corner(in.facets.first(node) + k), sides = in.reference.sides;
@@ -188,8 +226,8 @@ StarSolves::StarSolves(const CellInput &in, const BoundaryTractions &boundary, c
   const StarModes modes{in, boundary};
   const std::size_t total = place_factors(modes, first_);
   factor_ = DeviceView<double *>(Kokkos::view_alloc("rpc::bound::factor", Kokkos::WithoutInitializing), total);
-  answer_ =
-      DeviceView<double *>("rpc::bound::answer", 3 * static_cast<std::size_t>(nodes) + 3 * in.facets.spoke.extent(0));
+  answer_ = DeviceView<double *>("rpc::bound::answer", modes.num_common() * static_cast<std::size_t>(nodes) +
+                                                           modes.own() * in.facets.spoke.extent(0));
   Kokkos::parallel_for("rpc::bound::factor_stars", device_range(nodes), FactorStars{modes, forms, first_, factor_});
   Kokkos::fence();
 }
@@ -199,7 +237,7 @@ void StarSolves::apply(const Tractions &g, const Tractions &z) const
   const StarModes modes{in_, boundary_};
   const auto first = first_;
   const auto factor = factor_, answer = answer_;
-  const int per_facet = 2 * (in_.reference.degree + 1), both = 3 + (in_.reference.degree == 1 ? 1 : 3);
+  const int per_facet = 2 * (in_.reference.degree + 1), both = modes.of_each();
   Kokkos::parallel_for(
       "rpc::bound::solve_stars", device_range(static_cast<LO>(in_.facets.num_spokes.extent(0))),
       KOKKOS_LAMBDA(const LO node) {

@@ -51,6 +51,7 @@ public:
         forces_(products(c.order, shape_at, bernstein_at)), mass_(products(c.order, bernstein_at, bernstein_at))
   {
     list_hats();
+    divide_by_circles();
     const std::size_t n = w.rise > 0 ? 2 * coefficients_ : coefficients_;
     for (auto *const of_unknowns : {&f_, &scale_, &start_, &low_bound_, &high_bound_}) of_unknowns->assign(n, 0.);
     std::vector<double> wanted(w.force);
@@ -103,9 +104,9 @@ private:
     add_transposed(force, y);
     for (std::size_t e = 0; e < c_.facet.size(); ++e)
       for (int i = 0; i < per_facet_; ++i)
-        for (int j = 0; j < per_facet_; ++j) y[e * per_facet_ + i] += mass_weight(e) * mass_[i][j] * whole(x, e, j);
+        for (int j = 0; j < per_facet_; ++j) y[e * per_facet_ + i] += mass(e, i, j) * whole(x, e, j);
     for (std::size_t k = coefficients_; k < x.size(); ++k)
-      y[k] = y[k - coefficients_] + beyond_weight((k - coefficients_) / per_facet_) * x[k];
+      y[k] = y[k - coefficients_] + beyond_weight((k - coefficients_) / per_facet_, k % per_facet_) * x[k];
   }
   void add_facet(const std::size_t e, const int i)
   {
@@ -121,12 +122,14 @@ private:
       f_[k] += c_.length[e] * forces_[j][i] * w_.depth[e][j];
       own += forces_[j][i] * forces_[j][i];
     }
-    const double diagonal = c_.length[e] * c_.length[e] * own / c_.modulus + mass_weight(e) * mass_[i][i];
+    const double diagonal = c_.length[e] * c_.length[e] * own / c_.modulus + mass(e, i, i);
     scale_[k] = 1 / std::sqrt(diagonal);
     if (!hardens) return;
     start_[k + coefficients_] = std::max(0., w_.near[e][i] - w_.high[e][i]);
-    high_bound_[k + coefficients_] = std::isinf(w_.high[e][i]) ? 0 : infinite;
-    scale_[k + coefficients_] = 1 / std::sqrt(diagonal + beyond_weight(e));
+    const bool none = !w_.none.empty() && w_.none[e][i];
+    if (none) start_[k + coefficients_] = 0;
+    high_bound_[k + coefficients_] = none || std::isinf(w_.high[e][i]) ? 0 : infinite;
+    scale_[k + coefficients_] = 1 / std::sqrt(diagonal + beyond_weight(e, i));
   }
   double near_weight(const std::size_t e) const
   {
@@ -134,9 +137,33 @@ private:
     return share * c_.length[e] * c_.length[e] / c_.modulus;
   }
   /// With the energy c p^2/2 of the foundation's springs.
-  double mass_weight(const std::size_t e) const { return near_weight(e) + w_.spring * c_.length[e]; }
+  double mass(const std::size_t e, const int i, const int j) const
+  {
+    const double of_springs = c_.circle.empty() ? mass_[i][j] : over_circle_[e][i][j];
+    return near_weight(e) * mass_[i][j] + w_.spring * c_.length[e] * of_springs;
+  }
   /// Of the squares of what coefficients exceed the yield limit by: (p - xi)^2/(2 H) is convex, so that its integral is no larger.
-  double beyond_weight(const std::size_t e) const { return c_.length[e] / (per_facet_ * w_.rise); }
+  double beyond_weight(const std::size_t e, const int i) const
+  {
+    const double circle = c_.circle.empty() || c_.circle[e][i] == 0 ? 1 : c_.circle[e][i];
+    return c_.length[e] / (per_facet_ * w_.rise * circle);
+  }
+  /// Of bodies of revolution int B_i B_j/(2 pi r) of the coefficients that are not 0 at the axis.
+  void divide_by_circles()
+  {
+    const Gauss rule = gauss(6);
+    for (const OfFacet &circle : c_.circle) {
+      over_circle_.push_back({});
+      for (std::size_t q = 0; q < rule.point.size(); ++q) {
+        const OfFacet b = bernstein_at(c_.order, rule.point[q]);
+        double here = 0;
+        for (int i = 0; i < per_facet_; ++i) here += b[i] * circle[i];
+        for (int i = 0; i < per_facet_; ++i)
+          for (int j = 0; j < per_facet_; ++j)
+            if (circle[i] > 0 && circle[j] > 0) over_circle_.back()[i][j] += rule.weight[q] * b[i] * b[j] / here;
+      }
+    }
+  }
   /// Intervals of hats on all levels, from about two nodes for each down to one for all.
   void list_hats()
   {
@@ -195,6 +222,7 @@ private:
   int per_facet_;
   std::size_t coefficients_;
   Table forces_, mass_; // of shape and Bernstein functions, of Bernstein functions
+  std::vector<Table> over_circle_;
   double low_ = 0, span_ = 0;
   std::vector<int> intervals_;
   std::vector<double> beside_forces_; // f without what the forces make of it

@@ -17,6 +17,8 @@ struct WantedTraction {
   std::vector<OfFacet> low, high; ///< (facets) bounds of the coefficients [Pa]
   double spring = 0;              ///< c of the foundation [m/Pa]
   double rise = 0;                ///< H [Pa/m]; where it is > 0 the traction may exceed `high`
+  std::vector<std::array<bool, 3>>
+      none{}; ///< (facets) coefficients that are 0 whatever the law is; empty: no such ones
 };
 
 /// (facets) Bernstein coefficients [Pa]. Any traction that the law admits gives a bound of the error; this one a good one.
