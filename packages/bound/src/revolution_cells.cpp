@@ -195,8 +195,8 @@ std::string loads_not_covered(const CellInput &in, const Comm &comm, const Bound
         bool at_axis = false;
         for (int v = 0; v < in.reference.sides; ++v)
           at_axis = at_axis || is_on_axis(in, in.cells(in.facets.cell(f, 0), v));
-        for (int i = 0; i < 2 && loads.known(f, i); ++i)
-          for (int j = 0; j < degrees; ++j) {
+        for (int i = 0; i < 2; ++i)
+          for (int j = 0; j < degrees && loads.known(f, i); ++j) {
             const double size = math::magnitude(loads.load(f, j, i));
             all = math::fmax(all, size);
             if (at_axis && j > k) bend = math::fmax(bend, size);
