@@ -5,6 +5,7 @@
 #include "rpc/contact/between_nodes.hpp"
 #include "rpc/contact/clearance.hpp"
 #include "rpc/contact/joined_sides.hpp"
+#include "rpc/core/device_values.hpp"
 #include "rpc/fem/measure.hpp"
 
 #include <algorithm>
@@ -196,20 +197,13 @@ void SeldomMeant::note_held_loads(const analysis::Problem &problem, const analys
 {
   const mesh::Mesh &mesh = *problem.discretization().mesh;
   const fem::DirichletDofs &dirichlet = step.elastic.dirichlet;
-  const auto fixed = to_host(dirichlet.fixed);
-  const auto group = to_host(dirichlet.tied ? dirichlet.tied->group : DeviceView<int *>());
-  const auto held_at = [&](const LO unknown) {
-    const bool owned = unknown < static_cast<LO>(group.extent(0));
-    return fixed(unknown) != 0 && !(owned && group(unknown) >= 0);
-  };
   const auto &loads = scene_.model.tractions;
   for (std::size_t k = 0; k < loads.size(); ++k) {
-    const std::vector<LO> nodes = mesh.nodes_of(loads[k].side, "Traction->" + loads[k].name + "->Side");
+    const auto nodes =
+        device_values(mesh.nodes_of(loads[k].side, "Traction->" + loads[k].name + "->Side"), "rpc::loaded_nodes");
     for (int c = 0; c < mesh.dim(); ++c) {
       if (loads[k].traction[c].is_zero() && loads[k].force[c].is_zero()) continue;
-      const bool held =
-          std::all_of(nodes.begin(), nodes.end(), [&](const LO n) { return held_at(mesh.dim() * n + c); });
-      if (sum_all(mesh.comm(), GO(held ? 0 : 1)) > 0) continue;
+      if (sum_all(mesh.comm(), fem::num_not_held(dirichlet, nodes, mesh.dim(), c)) > 0) continue;
       notes_.add("the load of \"Traction->" + loads[k].name + "\" along " + "XYZ"[c] +
                  " goes into supports: \"Dirichlet\" prescribes the displacement along " + "XYZ"[c] +
                  " of all nodes that it acts on, and the body feels nothing of it");

@@ -422,4 +422,20 @@ std::vector<std::array<double, 3>> reaction_forces(const Discretization &d, cons
   return reactions;
 }
 
+GO num_not_held(const DirichletDofs &dirichlet, const DeviceView<LO *> &nodes, const int dim, const int component)
+{
+  const auto fixed = dirichlet.fixed;
+  const auto group = dirichlet.tied ? dirichlet.tied->group : DeviceView<int *>();
+  const LO num_grouped = static_cast<LO>(group.extent(0));
+  GO number = 0;
+  Kokkos::parallel_reduce(
+      "rpc::fem::num_not_held", device_range(static_cast<LO>(nodes.extent(0))),
+      KOKKOS_LAMBDA(const LO n, GO &sum) {
+        const LO i = dof(dim, nodes(n), component);
+        if (fixed(i) == 0 || (i < num_grouped && group(i) >= 0)) ++sum;
+      },
+      number);
+  return number;
+}
+
 } // namespace rpc::fem

@@ -5,6 +5,7 @@
 #include "rpc/core/dofs.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/parallel.hpp"
+#include "rpc/core/values_at.hpp"
 #include "rpc/fem/elasticity.hpp"
 #include "rpc/fem/surface.hpp"
 #include "rpc/mesh/box.hpp"
@@ -78,10 +79,10 @@ Point centroid(const Discretization &d, const mesh::Side &side, const std::vecto
 {
   Vector areas(d.owned_dofs);
   add_node_areas(d, side, areas);
-  const auto area = areas.getLocalViewHost(Tpetra::Access::ReadOnly);
+  const auto area = values_at(areas, nodes, d.dim());
   std::vector<double> sums(4, 0.);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const double here = area(dof(d.dim(), nodes[i], 0), 0);
+    const double here = area(i, 0);
     for (int c = 0; c < d.dim(); ++c) sums[c] += here * x(i, c);
     sums[3] += here;
   }

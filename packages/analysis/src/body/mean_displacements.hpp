@@ -21,13 +21,13 @@ public:
   std::vector<std::array<double, 3>> operator()(const Vector &u) const;
 
 private:
-  struct Weight {
-    LO dof; // of this rank
-    int component;
-    double weight;
+  struct Place {
+    std::vector<LO> nodes; // of this rank
+    std::vector<double> weights;
   };
   const Comm &comm_;
-  std::vector<std::vector<Weight>> weights_; // of each condition
+  int dim_;
+  std::vector<Place> places_; // of each condition
 };
 
 } // namespace rpc::analysis

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/side_displacements.hpp"
 
+#include "rpc/core/values_at.hpp"
 #include "rpc/fem/elasticity.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
@@ -12,7 +13,6 @@ namespace rpc::analysis
 
 std::vector<SideDisplacement> side_displacements(const fem::Discretization &d, const Vector &u)
 {
-  const auto displacement = u.getLocalViewHost(Tpetra::Access::ReadOnly);
   const int dim = d.dim();
   constexpr int width = 8; // of a side: sums by area and by nodes, 3 each, then area and number of nodes
   const auto &sides = d.mesh->sides;
@@ -21,12 +21,13 @@ std::vector<SideDisplacement> side_displacements(const fem::Discretization &d, c
     double *const sum = &own[width * s];
     Vector areas(d.owned_dofs);
     fem::add_node_areas(d, sides[s], areas);
-    const auto area_of = areas.getLocalViewHost(Tpetra::Access::ReadOnly);
-    for (const LO node : d.mesh->nodes_of(sides[s].name, "side_displacement")) {
-      const double area = area_of(dim * node, 0);
+    const std::vector<LO> nodes = d.mesh->nodes_of(sides[s].name, "side_displacement");
+    const auto displacement = values_at(u, nodes, dim), area_of = values_at(areas, nodes, dim);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      const double area = area_of(n, 0);
       double length = 0;
       for (int c = 0; c < dim; ++c) {
-        const double x = displacement(dim * node + c, 0);
+        const double x = displacement(n, c);
         sum[c] += area * x;
         sum[3 + c] += x;
         length = std::hypot(length, x);

@@ -2,6 +2,7 @@
 #include "step/step_dents.hpp"
 
 #include "rpc/contact/node_columns.hpp"
+#include "rpc/core/dofs.hpp"
 #include "rpc/core/parallel.hpp"
 
 namespace rpc::analysis
@@ -66,25 +67,37 @@ Vector moved_along(const Problem &problem, const double t, const Vector &u)
   const int dim = d.dim();
   const auto dirichlet = fem::dirichlet_dofs(d, problem.model().seen_at(t).dirichlet);
   Vector moved(u, Teuchos::Copy);
-  std::vector<double> sums(6, 0.); // of the changes and their numbers, by component
-  {
-    const auto condition = to_host(dirichlet.condition);
-    const auto group = to_host(dirichlet.tied ? dirichlet.tied->group : DeviceView<int *>());
-    const auto from = u.getLocalViewHost(Tpetra::Access::ReadOnly);
-    const auto to = dirichlet.value->getLocalViewHost(Tpetra::Access::ReadOnly);
-    for (std::size_t i = 0; i < condition.extent(0); ++i) {
-      if (condition(i) < 0 || (group.extent(0) > 0 && group(i) >= 0)) continue;
-      const int c = component_of(dim, static_cast<LO>(i));
-      sums[c] += to(i, 0) - from(i, 0);
-      ++sums[3 + c];
-    }
+  const LO nodes = d.mesh->num_owned_nodes();
+  const auto condition = dirichlet.condition;
+  const auto group = dirichlet.tied ? dirichlet.tied->group : DeviceView<int *>();
+  const bool ties = group.extent(0) > 0;
+  std::vector<double> sums(2 * dim, 0.); // of the changes and their numbers, by component
+  for (int c = 0; c < dim; ++c) {
+    const auto from = device_read(u), to = device_read(*dirichlet.value);
+    Kokkos::parallel_reduce(
+        "rpc::analysis::moved_along", device_range(nodes),
+        KOKKOS_LAMBDA(const LO n, double &change) {
+          const LO i = dof(dim, n, c);
+          if (condition(i) >= 0 && !(ties && group(i) >= 0)) change += to(i) - from(i);
+        },
+        sums[c]);
+    Kokkos::parallel_reduce(
+        "rpc::analysis::num_moved_along", device_range(nodes),
+        KOKKOS_LAMBDA(const LO n, double &number) {
+          const LO i = dof(dim, n, c);
+          if (condition(i) >= 0 && !(ties && group(i) >= 0)) number += 1;
+        },
+        sums[dim + c]);
   }
   sums = summed(d.mesh->comm(), sums);
-  const auto to = moved.getLocalViewHost(Tpetra::Access::ReadWrite);
-  for (std::size_t i = 0; i < to.extent(0); ++i) {
-    const int c = component_of(dim, static_cast<LO>(i));
-    if (sums[3 + c] > 0) to(i, 0) += sums[c] / sums[3 + c];
+  const auto to = device_write(moved);
+  for (int c = 0; c < dim; ++c) {
+    if (!(sums[dim + c] > 0)) continue;
+    const double mean = sums[c] / sums[dim + c];
+    Kokkos::parallel_for(
+        "rpc::analysis::move_along", device_range(nodes), KOKKOS_LAMBDA(const LO n) { to(dof(dim, n, c)) += mean; });
   }
+  Kokkos::fence();
   return moved;
 }
 

@@ -165,4 +165,7 @@ RCP<const TiedStiffness> tied_stiffness(const Discretization &d, const Prescribe
 std::vector<std::array<double, 3>> reaction_forces(const Discretization &d, const DirichletDofs &dirichlet,
                                                    int num_conditions, const Vector &out_of_balance);
 
+/// How many of some nodes of this rank nothing holds along a component; what a force moves is not held.
+GO num_not_held(const DirichletDofs &dirichlet, const DeviceView<LO *> &nodes, int dim, int component);
+
 } // namespace rpc::fem
