@@ -113,8 +113,8 @@ struct LinearSolver::Impl {
     row(candidate).left.clear();
   }
   bool is_sparse() const { return candidates.front().applies(); }
-  void prepare(double tolerance);
-  bool counted(Candidate &candidate, double tolerance);
+  void prepare();
+  bool counted(Candidate &candidate);
   Result attempt(const Vector &b, Vector &x, const Accuracy &wanted);
   const Factor::Prospect *prospect();
   bool sparse_pays(double iterations_in_all, double tolerance);
@@ -209,12 +209,12 @@ void LinearSolver::Impl::choose_before_the_first_solve()
 }
 
 /// Brings a preconditioner to H, and counts what that took. @return whether it can be used
-bool LinearSolver::Impl::counted(Candidate &candidate, const double tolerance)
+bool LinearSolver::Impl::counted(Candidate &candidate)
 {
   used = &candidate;
   row(candidate).tried = true;
   const double start = Teuchos::Time::wallTime();
-  const auto done = candidate.B->prepare(tolerance);
+  const auto done = candidate.B->prepare();
   counts.preconditioner_setups += done == Preconditioner::Prepared::made;
   row(candidate).setups += done == Preconditioner::Prepared::made;
   counts.local_corrections += done == Preconditioner::Prepared::updated;
@@ -228,14 +228,14 @@ LinearSolver::Impl::Candidate &LinearSolver::Impl::first()
 }
 
 /// `used` <- the first candidate that applies and does not refuse the present H.
-void LinearSolver::Impl::prepare(const double tolerance)
+void LinearSolver::Impl::prepare()
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::preconditioner"));
   const char *refused = nullptr;
   for (Candidate &candidate : candidates) {
     if (!candidate.applies()) continue;
     try {
-      if (counted(candidate, tolerance)) break;
+      if (counted(candidate)) break;
       refused = "a factor is refused";
     } catch (const Error &) {
       throw;
@@ -264,7 +264,7 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
   try {
     if (interrupted(*H->getDomainMap()->getComm())) throw Interrupted();
     const double least = std::max(wanted.residual, options.tolerance);
-    prepare(least);
+    prepare();
     const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::krylov"));
     const double start = Teuchos::Time::wallTime();
     Convergence seen;
@@ -280,7 +280,7 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
                                   : krylov.solve(*used->B, H->is_symmetric(), b, x, wanted, asked);
     given_up = done.given_up;
     lost_iterations += std::max(0., done.iterations - fair(least));
-    used->B->learn(done.iterations, done.residual, seconds_of_cg.counted);
+    used->B->learn(done.iterations, seconds_of_cg.counted);
     result = {done.converged, done.broken, false, done.iterations, done.energy, done.reason};
     counts.iterations.push_back(result.iterations);
     ++row(*used).solves;
@@ -429,7 +429,7 @@ double LinearSolver::inverse_energy_held(const Vector &F)
 {
   if (!(F.norm2() > 0)) return 0;
   try {
-    impl_->prepare(1);
+    impl_->prepare();
     return solver::inverse_energy(*impl_->used->B, F);
   } catch (const Interrupted &) { // the next solve tells
     return std::numeric_limits<double>::quiet_NaN();

@@ -28,7 +28,7 @@ public:
     A.getLocalDiagCopy(inverse_);
     inverse_.reciprocal(inverse_);
   }
-  Prepared prepare(double) override { return Prepared::unchanged; }
+  Prepared prepare() override { return Prepared::unchanged; }
   void forget() override { FAIL() << "nobody asked for that"; }
   std::string name() const override { return "diagonal"; }
   RCP<const Map> getDomainMap() const override { return inverse_.getMap(); }

@@ -266,7 +266,7 @@ TEST(LinearSolver, FollowsChangesOfAFewNodesWithoutASetUp)
   EXPECT_EQ(beam.linear->counts().local_corrections, 3);
 }
 
-TEST(LinearSolver, SetsUpAgainOnceWhereAllStatesChange)
+TEST(LinearSolver, FollowsAllStatesWithAHierarchyOfOthers)
 {
   solver::LinearSolverOptions options;
   options.multigrid = "algebraic"; // a GPU's iterations take so long that a sparse factor of the host's would take over
@@ -275,14 +275,11 @@ TEST(LinearSolver, SetsUpAgainOnceWhereAllStatesChange)
   const Vector &load = *beam.elastic.load;
   open_between(beam, 0.01, 4.99);
   const int open = beam.linear->solve(load, x, 1e-8).iterations;
-  open_between(beam, 2, 2.01); // multigrid was made for a side that moves freely
-  EXPECT_GT(beam.linear->solve(load, x, 1e-8).iterations, open + 5);
-  EXPECT_EQ(beam.linear->counts().preconditioner_setups, 1);
-  const auto again = beam.linear->solve(load, x, 1e-8); // for the same states: set up again, or not worth it
-  EXPECT_LE(again.iterations, beam.linear->counts().preconditioner_setups == 2 ? open + 3 : open + 15);
-  for (int k = 0; k < 3; ++k) {
-    open_between(beam, 0.01, k % 2 ? 4.99 : 2);
-    EXPECT_TRUE(beam.linear->solve(load, x, 1e-8).converged);
+  for (const double to : {2.01, 2., 4.99, 2.}) { // multigrid was made for a side that moves freely
+    open_between(beam, to == 2.01 ? 2 : 0.01, to);
+    const auto result = beam.linear->solve(load, x, 1e-8);
+    EXPECT_TRUE(result.converged);
+    EXPECT_LE(result.iterations, open + 15);
     EXPECT_LT(residual_of(beam, x), 1.01e-8);
   }
   EXPECT_LE(beam.linear->counts().preconditioner_setups, 2) << solver::solver_path(beam.linear->counts());

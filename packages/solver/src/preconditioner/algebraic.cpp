@@ -5,7 +5,6 @@
 #include "rpc/algebra/bounded_update.hpp"
 #include "rpc/solver/rules.hpp"
 
-#include <cmath>
 #include <utility>
 
 namespace rpc::solver
@@ -39,17 +38,14 @@ Algebraic::Algebraic(RCP<const UpdatedOperator> H, Body body, const LinearSolver
 {
 }
 
-Preconditioner::Prepared Algebraic::prepare(const double tolerance)
+Preconditioner::Prepared Algebraic::prepare()
 {
   const int revision = H_->revision();
   const bool exists = !multigrid_.is_null();
-  const bool renewal_pays = is_worn_ && excess(-std::log10(tolerance)) > linear_rules.setup_in_iterations;
-  if (exists && revision == revision_ && !renewal_pays) return Prepared::unchanged;
-  if (exists && !is_worn_ && !for_each_state_) {
+  if (exists && revision == revision_) return Prepared::unchanged;
+  if (exists && !for_each_state_) {
     is_fresh_ = false;
-    const bool is_rough = -std::log10(tolerance) <= linear_rules.rough_digits;
     for (const double slight : {0., double(linear_rules.slight_change)}) {
-      if (slight > 0 && !is_rough) continue;
       correction_ = LocalCorrection::around(*H_, *A_, written_, slight);
       const bool is_whole = !correction_ && num_changes(*H_, written_, slight) == 0; // there is nothing to correct
       if (!correction_ && !is_whole) continue;
@@ -57,7 +53,6 @@ Preconditioner::Prepared Algebraic::prepare(const double tolerance)
       return is_whole && slight == 0 ? Prepared::unchanged : Prepared::updated;
     }
   }
-  setups_for_states_ += exists;
   set_up();
   revision_ = revision;
   return Prepared::made;
@@ -79,7 +74,6 @@ void Algebraic::set_up()
   }
   if (!correction_) write(bounded_update(*H_));
   is_fresh_ = true;
-  is_worn_ = false;
   is_renewed_ =
       !multigrid_.is_null() && muelu_.get<std::string>("reuse: type") != "none" && renew_multigrid(A_, multigrid_);
   if (is_renewed_) return;
@@ -127,24 +121,6 @@ bool Algebraic::renew()
   if (is_fresh_ && !is_renewed_) return false;
   forget();
   return true;
-}
-
-void Algebraic::learn(const int iterations, const double residual, double)
-{
-  const double digits = -std::log10(residual);
-  if (!(digits > linear_rules.few_digits)) return;
-  iterations_per_digit_ = iterations / digits;
-  if (is_fresh_)
-    usual_iterations_ = iterations_per_digit_;
-  else
-    is_worn_ = setups_for_states_ < linear_rules.most_setups_for_states &&
-               excess(-std::log10(linear_rules.full_tolerance)) > linear_rules.setup_in_iterations;
-}
-
-/// CG iterations that a solve of this many digits would save right after a set-up.
-double Algebraic::excess(const double digits) const
-{
-  return usual_iterations_ > 0 ? (iterations_per_digit_ - usual_iterations_) * digits : 0;
 }
 
 bool Algebraic::strengthen()

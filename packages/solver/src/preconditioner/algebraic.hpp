@@ -15,7 +15,7 @@ namespace rpc::solver
 
 /// MueLu's hierarchy for a matrix that is softer than H, with exact solves on a patch around the contact nodes that bring in the rest
 /// of H and its later changes, doc/theory.md (4.8), (4.9). It is set up again, keeping what `Reuse` allows, where the patch would be
-/// too large or CG says that the corrections have worn out. Or, for few unknowns, for each choice of contact states. Of an update that is
+/// too large. Or, for few unknowns, for each choice of contact states. Of an update that is
 /// not symmetric it takes the symmetric part.
 class Algebraic : public Preconditioner
 {
@@ -23,7 +23,7 @@ public:
   /// @param for_each_state  made for H itself whenever it changes, without a patch
   Algebraic(RCP<const UpdatedOperator> H, Body body, const LinearSolverOptions &options, bool for_each_state);
 
-  Prepared prepare(double tolerance) override;
+  Prepared prepare() override;
   void forget() override;
   std::string name() const override { return strengthened_ ? "stronger algebraic" : "algebraic"; }
 
@@ -35,8 +35,6 @@ public:
   RCP<const Map> getRangeMap() const override { return H_->getRangeMap(); }
 
   bool renew() override;
-  /// It learns when it has worn out.
-  void learn(int iterations, double residual, double seconds_of_iteration) override;
   /// A stronger smoother, for nearly incompressible or badly shaped cells, where aggregation misses slow modes and a factor would be too
   /// large. At most once, and not against what the deck asks for.
   /// @return whether it is another preconditioner now, to be made from nothing
@@ -45,7 +43,6 @@ public:
 private:
   void set_up();
   void write(const DeviceView<double ***> &update);
-  double excess(double digits) const;
 
   RCP<const UpdatedOperator> H_;
   Body body_;
@@ -60,11 +57,7 @@ private:
   int revision_ = -1;       // of H when it was last brought to it
   bool is_fresh_ = false;   // no states have changed since the last set-up
   bool is_renewed_ = false; // the last set-up reused the one before
-  bool is_worn_ = false;    // corrections do not suffice any more
   bool strengthened_ = false;
-  int setups_for_states_ = 0;       // that took the place of an earlier hierarchy
-  double usual_iterations_ = 0;     // for each digit, right after a set-up; 0: not known
-  double iterations_per_digit_ = 0; // of the last solve
 };
 
 } // namespace rpc::solver

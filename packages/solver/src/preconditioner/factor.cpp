@@ -48,7 +48,7 @@ const Factor::Prospect &Factor::prospect()
   return prospect_;
 }
 
-Preconditioner::Prepared Factor::prepare(double)
+Preconditioner::Prepared Factor::prepare()
 {
   const int revision = H_->revision();
   if (revision == revision_) return refused_ ? Prepared::refused : Prepared::unchanged;

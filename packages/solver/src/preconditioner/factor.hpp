@@ -36,7 +36,7 @@ public:
   void take_band() { kind_ = Kind::band; }
 
   /// @throws std::runtime_error, unless of few unknowns, where H is not positive definite, or there is an obstacle
-  Prepared prepare(double tolerance) override;
+  Prepared prepare() override;
   void forget() override;
   bool renew() override;
   bool is_exact() const override { return has_all_ && last_update_ != CoarsestSolver::Update::rough; }

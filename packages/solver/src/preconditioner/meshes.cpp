@@ -64,7 +64,7 @@ std::unique_ptr<CoarsestSolver> Meshes::coarsest(const MeshLevel &level, const b
   return std::make_unique<AlgebraicSolver>(level, list);
 }
 
-Preconditioner::Prepared Meshes::prepare(double)
+Preconditioner::Prepared Meshes::prepare()
 {
   const int revision = H_->revision();
   const bool exists = !multigrid_.is_null();
@@ -85,7 +85,7 @@ Preconditioner::Prepared Meshes::prepare(double)
   return exists ? Prepared::updated : Prepared::made;
 }
 
-void Meshes::learn(const int iterations, double, const double seconds_of_iteration)
+void Meshes::learn(const int iterations, const double seconds_of_iteration)
 {
   // A solve on the interior path takes one or two iterations where nothing has been put off.
   lost_seconds_ = is_current_ ? 0 : lost_seconds_ + std::max(iterations - 1, 0) * seconds_of_iteration;

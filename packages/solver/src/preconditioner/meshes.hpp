@@ -22,13 +22,13 @@ public:
   }
 
   /// @throws std::runtime_error where there is no coarser mesh, or a coarse matrix is not positive definite
-  Prepared prepare(double tolerance) override;
+  Prepared prepare() override;
   void forget() override;
   std::string name() const override { return "meshes"; }
   std::string description() const override;
   /// Where slight changes of contact that the coarsest solver has not followed have cost as much time as it takes
   /// to follow them, it does so next.                                                                doc/theory.md (4.12)
-  void learn(int iterations, double residual, double seconds_of_iteration) override;
+  void learn(int iterations, double seconds_of_iteration) override;
 
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp = Teuchos::NO_TRANS, double = 1,
              double = 0) const override

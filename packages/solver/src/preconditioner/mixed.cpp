@@ -169,7 +169,7 @@ public:
   explicit Triangular(const System &system) : system_(system) {}
   RCP<const Map> getDomainMap() const override { return system_.all; }
   RCP<const Map> getRangeMap() const override { return system_.all; }
-  Prepared prepare(double) override { return Prepared::unchanged; }
+  Prepared prepare() override { return Prepared::unchanged; }
   void forget() override {}
   std::string name() const override { return "mixed"; }
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const override
@@ -212,16 +212,16 @@ Mixed::Mixed(RCP<const UpdatedOperator> H, MakeMixedForm make, LinearSolverOptio
 
 Mixed::~Mixed() = default;
 
-Preconditioner::Prepared Mixed::prepare(const double tolerance)
+Preconditioner::Prepared Mixed::prepare()
 {
   if (!system_) system_ = std::make_unique<System>(*H_, make_(), options_);
   system_->H0->follow(*H_);
-  return system_->meshes.prepare(tolerance);
+  return system_->meshes.prepare();
 }
 
-void Mixed::learn(const int iterations, const double residual, const double seconds_of_iteration)
+void Mixed::learn(const int iterations, const double seconds_of_iteration)
 {
-  if (system_) system_->meshes.learn(iterations, residual, seconds_of_iteration);
+  if (system_) system_->meshes.learn(iterations, seconds_of_iteration);
 }
 
 void Mixed::forget()

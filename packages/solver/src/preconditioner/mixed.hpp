@@ -25,7 +25,7 @@ public:
   Mixed(RCP<const UpdatedOperator> H, MakeMixedForm make, LinearSolverOptions options);
   ~Mixed() override;
 
-  Prepared prepare(double tolerance) override;
+  Prepared prepare() override;
   void forget() override;
   std::string name() const override { return "mixed"; }
   std::string description() const override;
@@ -35,7 +35,7 @@ public:
   /// @param gives_up  null: never   @throws Interrupted on all ranks
   KrylovResult solve(const Vector &b, Vector &x, const Accuracy &wanted, const GivesUp &gives_up) const;
 
-  void learn(int iterations, double residual, double seconds_of_iteration) override;
+  void learn(int iterations, double seconds_of_iteration) override;
 
   /// y <- (V - V Z^T diag(1/s + 1/bulk modulus)^-1 Z V) x, V the multigrid for H_0: positive definite as long as V <= H_0^-1.  (4.16)
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,

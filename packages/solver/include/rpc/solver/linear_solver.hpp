@@ -51,7 +51,7 @@ std::string solver_path(const LinearSolverCounts &counts);
 ///
 /// These are candidates, in an order: the first one that applies is used, set up at the first solve, and follows H when H has changed. The
 /// next one takes over where it fails or breaks down, and a sparse factor where CG takes longer by the cost model. Any right side may be
-/// solved for: with the same H nothing is set up again, but after a failure or where corrections have worn out.
+/// solved for: with the same H nothing is set up again, but after a failure.
 class LinearSolver
 {
 public:

@@ -21,13 +21,12 @@ public:
     refused    ///< this kind of B cannot be had for the present H, and must not be applied
   };
   /// Brings B to the present H, by its revision.
-  /// @param tolerance  |r|/|b| of the solve to come, in (0, 1]: worn parts are renewed only where that pays
   /// @throws std::exception on all ranks where the set-up fails, such as of a singular matrix; then B must not be applied
-  virtual Prepared prepare(double tolerance) = 0;
+  virtual Prepared prepare() = 0;
   /// Drops what is set up: the next prepare() starts from nothing.
   virtual void forget() = 0;
-  /// Called after a solve with its iterations and the residual |r|/|b| at its end: B may decide to be set up anew for H.
-  virtual void learn(int /*iterations*/, double /*residual*/, double /*seconds_of_iteration*/) {}
+  /// Called after a solve with its iterations: B may decide to be set up anew for H.
+  virtual void learn(int /*iterations*/, double /*seconds_of_iteration*/) {}
   /// Where B has followed changes of H, or reuses parts of an earlier B, these may be to blame for a solve that went badly: the next
   /// prepare() does without. @return whether that makes another B
   virtual bool renew() { return false; }

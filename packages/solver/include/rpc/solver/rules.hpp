@@ -74,12 +74,6 @@ struct LinearRules {
                             "a renewal takes two CG iterations, the old one costs a step about as many"};
 
   // MueLu's hierarchy, (4.8), (4.9).
-  Rule<double> setup_in_iterations{12, "linear.setup_in_iterations", "CG iterations in the time of a set-up [-]",
-                                   "not measured"};
-  Rule<double> few_digits{2, "linear.few_digits", "digits that tell nothing of the rate [-]", "not measured"};
-  Rule<double> rough_digits{6, "linear.rough_digits", "digits that may leave slight changes to CG [-]", "(4.12)"};
-  Rule<int> most_setups_for_states{1, "linear.most_setups_for_states", "set-ups for changed states [-]",
-                                   "not measured"};
   Rule<int> layers{2, "linear.layers", "layers of a patch around changed nodes in 2D [-]",
                    "the second saves one CG iteration in ten; in 3D a layer saves as much for ten times the factor"};
   Rule<double> patch_work{3e3, "linear.patch_work", "multiplications of a patch's factor, a row of H [-]",
