@@ -33,7 +33,6 @@ double fair(const double tolerance)
 
 /// How a linear solve went that was not good.
 enum class Outcome {
-  slow,   ///< it converged, in more iterations than LinearRules::slow
   failed, ///< it stopped before it converged
   broken, ///< the set-up or the Krylov method broke down: the matrix may be singular
   dear    ///< it was given up, for a sparse factor takes less time than the iterations that were left
@@ -46,7 +45,6 @@ std::optional<Outcome> outcome_of(const LinearSolver::Result &result, const bool
   if (given_up) return Outcome::dear;
   if (result.broken) return Outcome::broken;
   if (!result.converged) return Outcome::failed;
-  if (result.iterations > linear_rules.slow) return Outcome::slow;
   return std::nullopt;
 }
 
@@ -65,8 +63,7 @@ std::string chosen_solver(const LinearSolverCounts &counts)
 }
 
 /// The candidates in order: the first one that applies is used. A sparse factor stands first, and waits until the iterations of the others
-/// would take longer than it. Where a solve fails, breaks down or is given up, goes_on() puts the next one in use for the same solve, and
-/// where it was slow for the next solve.
+/// would take longer than it. Where a solve fails, breaks down or is given up, goes_on() puts the next one in use for the same solve.
 struct LinearSolver::Impl {
   enum class Kind { sparse, mixed, meshes, factor, algebraic };
   enum class State {
@@ -90,7 +87,6 @@ struct LinearSolver::Impl {
   std::vector<Candidate> candidates;
   Factor *sparse;               // the first of them
   const Mixed *mixed = nullptr; // null: the deck, the mesh or the body rules it out
-  Algebraic *algebraic;         // the last of them
   Krylov krylov;
   int solves_to_come = 1;               // about
   bool may_be_sparse;                   // the deck leaves the preconditioner open, and memory may do
@@ -141,7 +137,7 @@ LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &
   if (mixed_form && want_meshes) mixed = consider<Mixed>(Kind::mixed, State::open, H, std::move(mixed_form), options);
   if (levels && want_meshes) consider<Meshes>(Kind::meshes, State::open, H, std::move(levels), options);
   if (automatic && for_each_state) consider<Factor>(Kind::factor, State::open, H, Factor::Kind::of_few);
-  algebraic = consider<Algebraic>(Kind::algebraic, State::open, H, body, options, for_each_state);
+  consider<Algebraic>(Kind::algebraic, State::open, H, body, options, for_each_state);
   may_be_sparse = automatic && unknowns <= linear_rules.most_sparse_rows;
   if (sum_all(*H->getDomainMap()->getComm(), static_cast<GO>(H->nodes().extent(0))) > 0)
     solves_to_come = linear_rules.solves_with_contact;
@@ -323,20 +319,15 @@ bool LinearSolver::Impl::goes_on(const Outcome outcome, const std::string &reaso
     if (stands_in_for) come_back(*stands_in_for);
     return false;
   }
-  const bool is_slow = outcome == Outcome::slow;
-  if (is_slow && now.is_on_meshes()) return false; // a factor would take longer
   // The mixed form fails in cells that are too stretched for it, which multigrid for the whole matrix may be good at.
-  const bool wants_factor = now.kind != Kind::mixed && !(is_slow && now.kind == Kind::algebraic);
-  return (wants_factor && take_sparse(reason)) || leave(now, State::left, reason);
+  return (now.kind != Kind::mixed && take_sparse(reason)) || leave(now, State::left, reason);
 }
 
-/// The next one is used from now on; of an algebraic hierarchy it is its stronger form. @return whether there is one
+/// The next one is used from now on. @return whether there is one
 bool LinearSolver::Impl::leave(Candidate &candidate, const State state, const std::string &reason)
 {
-  if (candidate.kind != Kind::algebraic)
-    put_out(candidate, state, reason);
-  else if (!algebraic->strengthen())
-    return false;
+  if (candidate.kind == Kind::algebraic) return false;
+  put_out(candidate, state, reason);
   record(first(), reason);
   return true;
 }
@@ -419,9 +410,7 @@ LinearSolver::Result LinearSolver::solve_held(const Vector &b, Vector &x, const 
     if (impl_->counts.path.empty() && impl_->used) impl_->record(*impl_->used, "");
     const auto outcome = outcome_of(result, impl_->given_up);
     if (!outcome) return result;
-    const bool other =
-        impl_->goes_on(*outcome, result.converged ? std::to_string(result.iterations) + " iterations" : result.reason);
-    if (!other || *outcome == Outcome::slow) return result;
+    if (!impl_->goes_on(*outcome, result.reason)) return result;
   }
 }
 

@@ -99,9 +99,7 @@ Teuchos::ParameterList valid_linear_solver_parameters()
   set_pass_through(valid, "MueLu",
                    "Handed to MueLu as it is, on top of smoothed aggregation with Chebyshev smoothing. Without it, a "
                    "sparse factor takes over "
-                   "where that takes less time than the CG iterations that are left. Where there is none, and CG takes "
-                   "more than 150 "
-                   "iterations, the smoother becomes stronger, unless the coarse size or the smoother are given here.");
+                   "where that takes less time than the CG iterations that are left.");
   return valid;
 }
 

@@ -42,7 +42,7 @@ struct LinearSolverCounts {
 /// What was chosen and why, as one line: the description, and the path where it has led past others.
 std::string chosen_solver(const LinearSolverCounts &counts);
 
-/// The path as one line, such as "meshes -> algebraic: 163 CG iterations"; empty before the first solve.
+/// The path as one line, such as "meshes -> sparse factor: given up after 15 CG iterations"; empty before the first solve.
 std::string solver_path(const LinearSolverCounts &counts);
 
 /// A Krylov method of Belos with multigrid: on coarser meshes where there are some, mesh_levels.hpp, followed by an algebraic

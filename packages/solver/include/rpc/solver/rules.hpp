@@ -31,7 +31,6 @@ struct LinearRules {
   Rule<double> few_iterations{5.5, "linear.few_iterations", "iterations worth a band factor [-]", "(4.10e)"};
   Rule<double> few_iterations_on_ranks{11, "linear.few_iterations_on_ranks", "the same on several ranks of hosts [-]",
                                        "two ranks halve an iteration, and slender bodies need more of them"};
-  Rule<int> slow{150, "linear.slow", "CG iterations of a slow solve [-]", "not measured"};
 
   // How CG goes on.
   Rule<int> window{20, "linear.window", "iterations that a rate is taken over [-]",
@@ -79,8 +78,6 @@ struct LinearRules {
   Rule<double> patch_work{3e3, "linear.patch_work", "multiplications of a patch's factor, a row of H [-]",
                           "a fraction of a set-up"};
   Rule<int> muelu_degree{2, "linear.muelu_degree", "degree of MueLu's smoother [-]", "not measured"};
-  Rule<int> strong_degree{8, "linear.strong_degree", "degree of the stronger smoother [-]", "not measured"};
-  Rule<double> strong_ratio{50, "linear.strong_ratio", "ratio of the stronger smoother [-]", "not measured"};
   Rule<GO> least_coarsening{4, "linear.least_coarsening", "rows over those of the last level on ranks [-]",
                             "what is solved directly has gone to one rank"};
   Rule<int> least_rows_of_rank{5000, "linear.least_rows_of_rank", "rows of a rank with Zoltan2 [-]", "not measured"};
