@@ -95,28 +95,25 @@ bool DirectSolver::make()
   for (std::size_t k = 0; k < lower_.size(); ++k) value[k] = factored_(lower_[k]);
   const Comm &comm = *A_->getComm();
   update_.forget();
-  ++factors_;
   return may_follow_ = factor_->make(to_root_.is_null() && comm.getSize() > 1 ? gathered_by_all(comm, value) : value);
 }
 
-/// By terms of rank one, by all of them or by the larger ones, if that takes less time than a new factor, else if it takes not much more
-/// than the factors that were made before.
+/// By terms of rank one, by all of them or by the larger ones, if that takes less time than a new factor.
 std::optional<CoarsestSolver::Update> DirectSolver::follow(const double slight)
 {
   if (!may_follow_ || cost().seconds < linear_rules.short_time) return std::nullopt;
   const MatrixChanges changes = changes_since(factored_, *A_, dofs_per_node_);
-  const double of_all = linear_rules.worth_factors * std::min<int>(factors_, linear_rules.most_factors_worth);
-  for (const double worth : {double(linear_rules.worth_a_factor), of_all})
-    for (double least = 0; least <= slight; least = least > 0 ? 10 * least : double(linear_rules.least_left_out)) {
-      const LowRankTerms wanted = low_rank_terms(changes, least, dofs_per_node_);
-      if (cost().seconds_of_column * update_.num_new(wanted.terms) > worth * cost().seconds) continue;
-      const Comm &comm = *A_->getComm();
-      const bool has_vectors = to_root_.is_null() || comm.getRank() == 0;
-      const double most_kept = linear_rules.kept_of_free * min_all(comm, memory_left()) / sizeof(double);
-      update_.set(*factor_, static_cast<int>(A_->getGlobalNumRows()), has_vectors, wanted.terms, wanted.couplings,
-                  most_kept);
-      return least == 0 ? Update::exact : Update::rough;
-    }
+  for (double least = 0; least <= slight; least = least > 0 ? 10 * least : double(linear_rules.least_left_out)) {
+    const LowRankTerms wanted = low_rank_terms(changes, least, dofs_per_node_);
+    if (cost().seconds_of_column * update_.num_new(wanted.terms) > linear_rules.worth_a_factor * cost().seconds)
+      continue;
+    const Comm &comm = *A_->getComm();
+    const bool has_vectors = to_root_.is_null() || comm.getRank() == 0;
+    const double most_kept = linear_rules.kept_of_free * min_all(comm, memory_left()) / sizeof(double);
+    update_.set(*factor_, static_cast<int>(A_->getGlobalNumRows()), has_vectors, wanted.terms, wanted.couplings,
+                most_kept);
+    return least == 0 ? Update::exact : Update::rough;
+  }
   return std::nullopt;
 }
 

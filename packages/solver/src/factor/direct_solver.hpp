@@ -44,7 +44,6 @@ private:
   std::unique_ptr<SparseFactor> factor_;
   HostView<double *> factored_;    // (entries of this rank) A's when the factor was made
   std::vector<std::size_t> lower_; // (of these on and below the diagonal) which each is
-  int factors_ = 0;                // that were made
   bool may_follow_ = false;        // by an update of the factor
   LowRankUpdate update_;           // of the factor
   RCP<const Import> to_root_;      // null: each rank has a factor of its own

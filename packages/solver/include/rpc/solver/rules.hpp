@@ -104,9 +104,6 @@ struct LinearRules {
   Rule<int> most_width{200, "linear.most_width", "width of a band as numbered [-]", "times of both"};
   Rule<double> short_time{5e-3, "linear.short_time", "a factor made for the slightest change [s]", "not measured"};
   Rule<double> worth_a_factor{0.7, "linear.worth_a_factor", "time of an update over a factor's [-]", "(4.11)"};
-  Rule<double> worth_factors{1.4, "linear.worth_factors", "the same over all factors made so far [-]",
-                             "later changes are at the same places"};
-  Rule<int> most_factors_worth{3, "linear.most_factors_worth", "factors that count as made so far [-]", "not measured"};
   Rule<double> least_left_out{1e-5, "linear.least_left_out",
                               "least bound of changes left to CG, over own block [-]; off: 1", "(4.12)"};
   Rule<double> kept_of_free{0.25, "linear.kept_of_free", "entries of an update over the free memory [-]",
