@@ -65,7 +65,7 @@ std::string chosen_solver(const LinearSolverCounts &counts)
 /// The candidates in order: the first one that applies is used. A sparse factor stands first, and waits until the iterations of the others
 /// would take longer than it. Where a solve fails, breaks down or is given up, goes_on() puts the next one in use for the same solve.
 struct LinearSolver::Impl {
-  enum class Kind { sparse, mixed, meshes, factor, algebraic };
+  enum class Kind { sparse, mixed, meshes, algebraic };
   enum class State {
     waits, ///< until it takes less time than the others
     open,  ///< may be used
@@ -110,7 +110,7 @@ struct LinearSolver::Impl {
   }
   bool is_sparse() const { return candidates.front().applies(); }
   void prepare();
-  bool counted(Candidate &candidate);
+  void count(Candidate &candidate);
   Result attempt(const Vector &b, Vector &x, const Accuracy &wanted);
   const Factor::Prospect *prospect();
   bool sparse_pays(double iterations_in_all, double tolerance);
@@ -132,12 +132,10 @@ LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &
   const GO unknowns = static_cast<GO>(H->getDomainMap()->getGlobalNumElements());
   const bool automatic = options.multigrid == "auto" && options.muelu.numParams() == 0;
   const bool want_meshes = options.multigrid == "mesh" || (automatic && unknowns > linear_rules.few_rows);
-  const bool for_each_state = unknowns <= linear_rules.most_rows_for_each_state;
-  sparse = consider<Factor>(Kind::sparse, State::waits, H, Factor::Kind::sparse);
+  sparse = consider<Factor>(Kind::sparse, State::waits, H);
   if (mixed_form && want_meshes) mixed = consider<Mixed>(Kind::mixed, State::open, H, std::move(mixed_form), options);
   if (levels && want_meshes) consider<Meshes>(Kind::meshes, State::open, H, std::move(levels), options);
-  if (automatic && for_each_state) consider<Factor>(Kind::factor, State::open, H, Factor::Kind::of_few);
-  consider<Algebraic>(Kind::algebraic, State::open, H, body, options, for_each_state);
+  consider<Algebraic>(Kind::algebraic, State::open, H, body, options);
   may_be_sparse = automatic && unknowns <= linear_rules.most_sparse_rows;
   if (sum_all(*H->getDomainMap()->getComm(), static_cast<GO>(H->nodes().extent(0))) > 0)
     solves_to_come = linear_rules.solves_with_contact;
@@ -186,12 +184,14 @@ bool LinearSolver::Impl::sparse_pays_now(const Convergence &seen, const double t
          seen.iterations() * seconds_of_cg.measured >= linear_rules.part_to_tell * sparse->prospect().cost.seconds;
 }
 
-/// By the form of the body, and by the iterations that it lets expect. Where these are more than CG may take, a factor would follow anyway.
+/// By the number of unknowns, the form of the body, and the iterations that it lets expect. Where these are more than CG may take, a factor would follow anyway.
 void LinearSolver::Impl::choose_before_the_first_solve()
 {
   if (is_sparse() || !counts.iterations.empty()) return;
-  const bool is_open = may_be_sparse && first().is_on_meshes();
   const Map &unknowns = *H->getDomainMap();
+  const bool are_few = static_cast<GO>(unknowns.getGlobalNumElements()) <= linear_rules.few_rows;
+  if (are_few && take_sparse("few unknowns")) return;
+  const bool is_open = may_be_sparse && first().is_on_meshes();
   const bool narrow = is_open && body.band_width > 0 &&
                       is_narrow(static_cast<double>(unknowns.getGlobalNumElements()), body.band_width, seconds_of_cg,
                                 unknowns.getComm()->getSize());
@@ -204,8 +204,8 @@ void LinearSolver::Impl::choose_before_the_first_solve()
   take_sparse("about " + std::to_string(static_cast<int>(expected)) + " CG iterations expected");
 }
 
-/// Brings a preconditioner to H, and counts what that took. @return whether it can be used
-bool LinearSolver::Impl::counted(Candidate &candidate)
+/// Brings a preconditioner to H, and counts what that took.
+void LinearSolver::Impl::count(Candidate &candidate)
 {
   used = &candidate;
   row(candidate).tried = true;
@@ -215,7 +215,6 @@ bool LinearSolver::Impl::counted(Candidate &candidate)
   row(candidate).setups += done == Preconditioner::Prepared::made;
   counts.local_corrections += done == Preconditioner::Prepared::updated;
   if (done != Preconditioner::Prepared::unchanged) counts.setup_seconds += Teuchos::Time::wallTime() - start;
-  return done != Preconditioner::Prepared::refused;
 }
 
 LinearSolver::Impl::Candidate &LinearSolver::Impl::first()
@@ -223,26 +222,20 @@ LinearSolver::Impl::Candidate &LinearSolver::Impl::first()
   return *std::find_if(candidates.begin(), candidates.end(), [](const Candidate &c) { return c.applies(); });
 }
 
-/// `used` <- the first candidate that applies and does not refuse the present H.
+/// `used` <- the first candidate that applies, brought to H.
 void LinearSolver::Impl::prepare()
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::preconditioner"));
-  const char *refused = nullptr;
-  for (Candidate &candidate : candidates) {
-    if (!candidate.applies()) continue;
-    try {
-      if (counted(candidate)) break;
-      refused = "a factor is refused";
-    } catch (const Error &) {
-      throw;
-    } catch (const std::exception &failure) {
-      pass_on_out_of_memory(failure);
-      if (candidate.kind != Kind::algebraic || options.muelu.numParams() == 0 || counts.preconditioner_setups > 0)
-        throw;
-      throw Error(ExitCode::bad_input, "deck: \"Linear Solver->MueLu\": " + one_line(failure.what()));
-    }
+  Candidate &candidate = first();
+  try {
+    count(candidate);
+  } catch (const Error &) {
+    throw;
+  } catch (const std::exception &failure) {
+    pass_on_out_of_memory(failure);
+    if (candidate.kind != Kind::algebraic || options.muelu.numParams() == 0 || counts.preconditioner_setups > 0) throw;
+    throw Error(ExitCode::bad_input, "deck: \"Linear Solver->MueLu\": " + one_line(failure.what()));
   }
-  if (refused) record(*used, refused);
 }
 
 void LinearSolver::Impl::record(const Candidate &candidate, const std::string &reason)

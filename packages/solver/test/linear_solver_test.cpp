@@ -72,19 +72,6 @@ TEST(FailedSolve, OfMeshesIsTakenOverByTheAlgebraicHierarchyWhichSaysWhy)
   EXPECT_EQ(counts.iterations[1], counts.iterations[2]);
 }
 
-TEST(FailedSolve, OfFewUnknownsOnMeshesIsTakenOverByAFactor)
-{
-  const SupportedGrid body(25); // 1250 unknowns: meshes come first
-  const auto solver = body.solver(options_for("auto"), [] { return MeshLevels(); });
-  const Vector b = body.grid.right_side();
-  Vector x(b.getMap());
-  EXPECT_TRUE(solver->solve(b, x, 1e-8).converged);
-  EXPECT_LE(solver->counts().iterations.back(), 2);
-  EXPECT_EQ(
-      solver_path(solver->counts()),
-      "meshes -> factor: the linear solver broke down: multigrid: a coarser mesh would be too small for the ranks");
-}
-
 /// Springs that pull make H indefinite, for which no multigrid on meshes can be made. Where the algebraic hierarchy breaks down as well, it
 /// is not the hierarchy that is to blame: the meshes are used again for other states.
 TEST(FailedSolve, OfBothHierarchiesIsBrokenAndTheMeshesComeBack)
@@ -200,22 +187,6 @@ TEST(FailedSolve, LeavesTheDecksChoiceAlone)
   EXPECT_EQ(solver_path(solver->counts()), "algebraic");
 }
 
-TEST(LinearSolver, TakesAHierarchyWhereAFactorWouldBeTooLarge)
-{
-  const SupportedGrid body(35); // 2450 unknowns, whose band takes more multiplications than a factor may
-  const auto solver = body.solver(options_for("auto"));
-  const Vector b = body.grid.right_side();
-  Vector x(b.getMap());
-  for (const GO to : {10, 20, 20}) {
-    body.hold(0, to, 100);
-    EXPECT_TRUE(solver->solve(b, x, 1e-8).converged);
-    EXPECT_LT(body.residual(x, b), 1.01e-8);
-  }
-  EXPECT_EQ(solver->counts().preconditioner_setups, 2) << "one for each choice of states";
-  EXPECT_EQ(solver->counts().local_corrections, 0);
-  EXPECT_EQ(solver_path(solver->counts()), "algebraic: a factor is refused");
-}
-
 /// Where the body lets expect many iterations, of all solves that contact will ask for, there is a factor from the first solve on.
 TEST(LinearSolver, TakesASparseFactorBeforeTheFirstSolveWhereManyIterationsAreExpected)
 {
@@ -261,7 +232,7 @@ TEST(LinearSolver, SolvesForFurtherRightSidesWithoutASetUp)
     const char *path;
   };
   for (const Kind &kind :
-       {Kind{"mesh", large, "meshes"}, {"algebraic", large, "algebraic"}, {"auto", small, "factor"}}) {
+       {Kind{"mesh", large, "meshes"}, {"algebraic", large, "algebraic"}, {"auto", small, "sparse factor: few unknowns"}}) {
     const SupportedGrid body(kind.nodes);
     const auto solver = body.solver(options_for(kind.multigrid), [&] { return body.levels(); });
     const Vector first = body.grid.right_side();

@@ -157,10 +157,10 @@ void DirectSolver::apply(const Vector &b, Vector &x) const
   Kokkos::deep_copy(DeviceView<double *>(device_write(x)), mine);
 }
 
-std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A, const int dofs_per_node, const double most_work)
+std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A, const int dofs_per_node)
 {
   auto solver = std::make_unique<DirectSolver>(std::move(A), dofs_per_node);
-  if (solver->cost().operations > most_work || !solver->lacks_memory().empty() || !solver->make()) return nullptr;
+  if (!solver->lacks_memory().empty() || !solver->make()) return nullptr;
   return solver;
 }
 

@@ -24,10 +24,8 @@ Teuchos::ParameterList list_for(const Map &dofs, const int dofs_per_node, const 
 
 } // namespace
 
-Algebraic::Algebraic(RCP<const UpdatedOperator> H, Body body, const LinearSolverOptions &options,
-                     const bool for_each_state)
-    : H_(std::move(H)), body_(std::move(body)), muelu_(list_for(*H_->getDomainMap(), body_.dim, options)),
-      for_each_state_(for_each_state)
+Algebraic::Algebraic(RCP<const UpdatedOperator> H, Body body, const LinearSolverOptions &options)
+    : H_(std::move(H)), body_(std::move(body)), muelu_(list_for(*H_->getDomainMap(), body_.dim, options))
 {
 }
 
@@ -36,7 +34,7 @@ Preconditioner::Prepared Algebraic::prepare()
   const int revision = H_->revision();
   const bool exists = !multigrid_.is_null();
   if (exists && revision == revision_) return Prepared::unchanged;
-  if (exists && !for_each_state_) {
+  if (exists) {
     is_fresh_ = false;
     for (const double slight : {0., double(linear_rules.slight_change)}) {
       correction_ = LocalCorrection::around(*H_, *A_, written_, slight);
@@ -61,10 +59,8 @@ void Algebraic::set_up()
 {
   correction_.reset();
   if (A_.is_null()) A_ = H_->base().copy();
-  if (!for_each_state_) {
-    write(bounded_update(*H_, linear_rules.most_on_coarse_meshes));
-    correction_ = LocalCorrection::around(*H_, *A_, written_);
-  }
+  write(bounded_update(*H_, linear_rules.most_on_coarse_meshes));
+  correction_ = LocalCorrection::around(*H_, *A_, written_);
   if (!correction_) write(bounded_update(*H_));
   is_fresh_ = true;
   is_renewed_ =

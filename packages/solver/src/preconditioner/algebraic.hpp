@@ -15,13 +15,12 @@ namespace rpc::solver
 
 /// MueLu's hierarchy for a matrix that is softer than H, with exact solves on a patch around the contact nodes that bring in the rest
 /// of H and its later changes, doc/theory.md (4.8), (4.9). It is set up again, keeping what `Reuse` allows, where the patch would be
-/// too large. Or, for few unknowns, for each choice of contact states. Of an update that is
+/// too large. Of an update that is
 /// not symmetric it takes the symmetric part.
 class Algebraic : public Preconditioner
 {
 public:
-  /// @param for_each_state  made for H itself whenever it changes, without a patch
-  Algebraic(RCP<const UpdatedOperator> H, Body body, const LinearSolverOptions &options, bool for_each_state);
+  Algebraic(RCP<const UpdatedOperator> H, Body body, const LinearSolverOptions &options);
 
   Prepared prepare() override;
   void forget() override;
@@ -43,7 +42,6 @@ private:
   RCP<const UpdatedOperator> H_;
   Body body_;
   Teuchos::ParameterList muelu_;
-  bool for_each_state_;
 
   RCP<CrsMatrix> A_;               // K with a bounded update; null: none was made yet
   DeviceView<double ***> written_; // (nodes of H, dim, dim) that update

@@ -14,14 +14,6 @@ namespace rpc::solver
 namespace
 {
 
-/// Multiplications that a factor of few unknowns may take.
-double most_work(const CrsMatrix &A)
-{
-  const Comm &comm = *A.getComm();
-  const bool on_one = max_all(comm, GO(num_local(*A.getRowMap()))) == static_cast<GO>(A.getGlobalNumRows());
-  return comm.getSize() > 1 && on_one ? linear_rules.most_work_on_one_of_several : linear_rules.most_work;
-}
-
 /// On all ranks; collective. @param a, b  (nodes, dim, dim)
 bool are_equal(const Comm &comm, const DeviceView<double ***> &a, const DeviceView<double ***> &b)
 {
@@ -43,7 +35,7 @@ const Factor::Prospect &Factor::prospect()
 {
   if (solver_) return prospect_;
   A_ = H_->base().copy();
-  solver_ = std::make_unique<DirectSolver>(A_, H_->dofs_per_node(), kind_ == Kind::band);
+  solver_ = std::make_unique<DirectSolver>(A_, H_->dofs_per_node(), is_band_);
   prospect_ = {solver_->cost(), solver_->lacks_memory()};
   return prospect_;
 }
@@ -51,16 +43,9 @@ const Factor::Prospect &Factor::prospect()
 Preconditioner::Prepared Factor::prepare()
 {
   const int revision = H_->revision();
-  if (revision == revision_) return refused_ ? Prepared::refused : Prepared::unchanged;
+  if (revision == revision_) return Prepared::unchanged;
   revision_ = -1;
-  const auto &[cost, obstacle] = prospect();
-  if (kind_ == Kind::of_few) {
-    refused_ = cost.operations > most_work(*A_) || !obstacle.empty();
-    if (!refused_) write_update(*A_, *H_, bounded_update(*H_));
-    refused_ = refused_ || !solver_->make();
-    revision_ = revision;
-    return refused_ ? Prepared::refused : Prepared::made;
-  }
+  const std::string &obstacle = prospect().obstacle;
   if (!obstacle.empty()) throw std::runtime_error(obstacle);
   const auto bounded = bounded_update(*H_, std::numeric_limits<double>::max());
   has_all_ = are_equal(*H_->getDomainMap()->getComm(), bounded, H_->update());
@@ -80,12 +65,11 @@ bool Factor::renew()
 
 std::string Factor::name() const
 {
-  return kind_ == Kind::of_few ? "factor" : kind_ == Kind::band ? "band factor" : "sparse factor";
+  return is_band_ ? "band factor" : "sparse factor";
 }
 
 std::string Factor::description() const
 {
-  if (kind_ == Kind::of_few) return "factor for each choice of states: few unknowns";
   std::ostringstream text;
   text.precision(1);
   text << std::fixed << name() << " of " << H_->getDomainMap()->getGlobalNumElements() << " unknowns, "

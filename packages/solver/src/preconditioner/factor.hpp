@@ -14,16 +14,11 @@ namespace rpc::solver
 /// The Cholesky factor of H itself. Of an update that is not symmetric it takes the symmetric part.
 ///
 /// A sparse factor, for matrices on which multigrid converges slowly. Low-rank updates (4.11), which are exact, follow changes of states; where
-/// they would take longer, the factor is made anew. That of few unknowns is made anew for each active set.
+/// they would take longer, the factor is made anew.
 class Factor : public Preconditioner
 {
 public:
-  enum class Kind {
-    of_few, ///< refuses an H that is not positive definite, or takes too many multiplications
-    sparse,
-    band ///< of a narrow band, in the order of the gids, on each rank
-  };
-  Factor(RCP<const UpdatedOperator> H, const Kind kind) : H_(std::move(H)), kind_(kind) {}
+  explicit Factor(RCP<const UpdatedOperator> H) : H_(std::move(H)) {}
 
   /// What a factor takes, and why it cannot be had, if so.
   struct Prospect {
@@ -32,10 +27,10 @@ public:
   };
   /// Orders the unknowns and counts, once; collective.
   const Prospect &prospect();
-  /// A sparse factor becomes one of a band; before the first prospect().
-  void take_band() { kind_ = Kind::band; }
+  /// It becomes the factor of a narrow band, in the order of the gids, on each rank; before the first prospect().
+  void take_band() { is_band_ = true; }
 
-  /// @throws std::runtime_error, unless of few unknowns, where H is not positive definite, or there is an obstacle
+  /// @throws std::runtime_error where H is not positive definite, or there is an obstacle
   Prepared prepare() override;
   void forget() override;
   bool renew() override;
@@ -56,12 +51,11 @@ public:
 
 private:
   RCP<const UpdatedOperator> H_;
-  Kind kind_;
+  bool is_band_ = false;
   RCP<CrsMatrix> A_;                     // K with an update; null: it was not analysed
   std::unique_ptr<DirectSolver> solver_; // of A
   Prospect prospect_;
-  int revision_ = -1; // of H when it was last brought to it, or refused it
-  bool refused_ = false;
+  int revision_ = -1;    // of H when it was last brought to it
   bool has_all_ = false; // of contact's stiffness
   CoarsestSolver::Update last_update_ = CoarsestSolver::Update::made;
 };

@@ -36,10 +36,8 @@ public:
 };
 
 /// A factor of the matrix as it is now; collective.
-/// @param most_work  operations that it may take
-/// @return null where it would take more, or more memory than there is, or the matrix is not positive definite
-std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A, int dofs_per_node,
-                                              double most_work = std::numeric_limits<double>::infinity());
+/// @return null where it would take more memory than there is, or the matrix is not positive definite
+std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A, int dofs_per_node);
 
 /// One V cycle of multigrid on given meshes, for H = K + contact. The interpolation between meshes does not depend on the contact
 /// states. It brings contact to each coarse matrix in place, and coarse functions are truncated at the contact points of the finest

@@ -17,8 +17,7 @@ public:
   enum class Prepared {
     unchanged, ///< nothing: B is that of the present H
     updated,   ///< B followed H by work near the contact nodes
-    made,      ///< B was set up, from nothing or from parts of the last one
-    refused    ///< this kind of B cannot be had for the present H, and must not be applied
+    made       ///< B was set up, from nothing or from parts of the last one
   };
   /// Brings B to the present H, by its revision.
   /// @throws std::exception on all ranks where the set-up fails, such as of a singular matrix; then B must not be applied

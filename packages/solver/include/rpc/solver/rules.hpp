@@ -12,11 +12,8 @@ namespace rpc::solver
 /// Which preconditioner a linear solve has, how each is made, and when the next one takes over. Equations are those of doc/theory.md.
 struct LinearRules {
   // Choice of a preconditioner.
-  Rule<GO> few_rows{1000, "linear.few_rows", "unknowns up to which multigrid is a factor [-]",
+  Rule<GO> few_rows{1000, "linear.few_rows", "unknowns up to which there is a factor from the start, and multigrid is one [-]",
                     "coarser meshes save little there, and leave CG a rest"};
-  Rule<GO> most_rows_for_each_state{2500, "linear.most_rows_for_each_state",
-                                    "unknowns up to which a preconditioner is made for each choice of states [-]",
-                                    "not measured; MueLu's hierarchy of so few is nearly a factor"};
   Rule<GO> most_sparse_rows{3000000, "linear.most_sparse_rows",
                             "unknowns up to which a sparse factor is thought of [-]",
                             "its memory in the plane and in space"};
@@ -87,10 +84,6 @@ struct LinearRules {
                               "their factor costs next to nothing"};
 
   // Factors, (4.10) - (4.12).
-  Rule<double> most_work{1e7, "linear.most_work", "multiplications of a factor of few unknowns [-]", "not measured"};
-  Rule<double> most_work_on_one_of_several{1e8, "linear.most_work_on_one_of_several",
-                                           "the same where one of several ranks has all rows [-]",
-                                           "the hierarchy would be set up over all of them"};
   Rule<GO> most_rows_on_each_rank{
       5200, "linear.most_rows_on_each_rank",
       "rows up to which each rank has the whole factor, and the coarsest mesh is factored [-]",
