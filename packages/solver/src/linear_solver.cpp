@@ -193,8 +193,7 @@ void LinearSolver::Impl::choose_before_the_first_solve()
   if (are_few && take_sparse("few unknowns")) return;
   const bool is_open = may_be_sparse && first().is_on_meshes();
   const bool narrow = is_open && body.band_width > 0 &&
-                      is_narrow(static_cast<double>(unknowns.getGlobalNumElements()), body.band_width, seconds_of_cg,
-                                unknowns.getComm()->getSize());
+                      is_narrow(static_cast<double>(unknowns.getGlobalNumElements()), body.band_width, seconds_of_cg);
   if (narrow) sparse->take_band();
   if (narrow && take_sparse("it takes no longer than a few iterations")) return;
   if (is_open && body.is_thin && take_sparse("the body is one thin layer of cells")) return;

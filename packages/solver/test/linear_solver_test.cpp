@@ -231,8 +231,9 @@ TEST(LinearSolver, SolvesForFurtherRightSidesWithoutASetUp)
     int nodes;
     const char *path;
   };
-  for (const Kind &kind :
-       {Kind{"mesh", large, "meshes"}, {"algebraic", large, "algebraic"}, {"auto", small, "sparse factor: few unknowns"}}) {
+  for (const Kind &kind : {Kind{"mesh", large, "meshes"},
+                           {"algebraic", large, "algebraic"},
+                           {"auto", small, "sparse factor: few unknowns"}}) {
     const SupportedGrid body(kind.nodes);
     const auto solver = body.solver(options_for(kind.multigrid), [&] { return body.levels(); });
     const Vector first = body.grid.right_side();

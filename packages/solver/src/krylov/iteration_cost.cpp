@@ -48,12 +48,11 @@ IterationSeconds seconds_of_iteration(const StiffnessOperator &K)
   return {with_all_ranks(K, counted), measured, ranks * measured};
 }
 
-bool is_narrow(const double unknowns, const double width, const IterationSeconds &iteration, const int ranks)
+bool is_narrow(const double unknowns, const double width, const IterationSeconds &iteration)
 {
-  const double few_iterations =
-      ranks > 1 && !on_gpu ? linear_rules.few_iterations_on_ranks : linear_rules.few_iterations;
   const FactorCost band = BandFactor::cost_of(unknowns, width);
-  return band.seconds + band.seconds_of_solve <= few_iterations * iteration.measured;
+  return band.seconds + band.seconds_of_solve <=
+         linear_rules.few_iterations * (on_gpu ? iteration.measured : iteration.on_one_rank);
 }
 
 } // namespace rpc::solver

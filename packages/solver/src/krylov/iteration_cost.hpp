@@ -16,8 +16,9 @@ struct IterationSeconds {
 /// Collective.
 IterationSeconds seconds_of_iteration(const StiffnessOperator &K);
 
-/// Whether a band factor takes no more time than a few CG iterations with multigrid.                               (4.10e)
-/// @param width  of the band below the diagonal   @param ranks  that share an iteration, while each has the factor
-bool is_narrow(double unknowns, double width, const IterationSeconds &iteration, int ranks);
+/// Whether a band factor takes no more time than a few CG iterations with multigrid, on hosts those of one rank: several ranks share an
+/// iteration, but slender bodies need the more of them.                                                           (4.10e)
+/// @param width  of the band below the diagonal
+bool is_narrow(double unknowns, double width, const IterationSeconds &iteration);
 
 } // namespace rpc::solver

@@ -5,7 +5,6 @@
 #include "rpc/solver/mesh_levels.hpp"
 
 #include <functional>
-#include <limits>
 #include <memory>
 
 namespace rpc::solver

@@ -12,7 +12,8 @@ namespace rpc::solver
 /// Which preconditioner a linear solve has, how each is made, and when the next one takes over. Equations are those of doc/theory.md.
 struct LinearRules {
   // Choice of a preconditioner.
-  Rule<GO> few_rows{1000, "linear.few_rows", "unknowns up to which there is a factor from the start, and multigrid is one [-]",
+  Rule<GO> few_rows{1000, "linear.few_rows",
+                    "unknowns up to which there is a factor from the start, and multigrid is one [-]",
                     "coarser meshes save little there, and leave CG a rest"};
   Rule<GO> most_sparse_rows{3000000, "linear.most_sparse_rows",
                             "unknowns up to which a sparse factor is thought of [-]",
@@ -26,8 +27,6 @@ struct LinearRules {
   Rule<double> part_to_tell{0.3, "linear.part_to_tell", "time of a factor before CG's rate is believed [-]",
                             "CG stalls at first, and is fast then, where layers are of unlike stiffness"};
   Rule<double> few_iterations{5.5, "linear.few_iterations", "iterations worth a band factor [-]", "(4.10e)"};
-  Rule<double> few_iterations_on_ranks{11, "linear.few_iterations_on_ranks", "the same on several ranks of hosts [-]",
-                                       "two ranks halve an iteration, and slender bodies need more of them"};
 
   // How CG goes on.
   Rule<int> window{20, "linear.window", "iterations that a rate is taken over [-]",
