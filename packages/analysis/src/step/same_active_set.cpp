@@ -39,8 +39,8 @@ solver::MinimizationSteps::Status minimize_from_same_active_set(const contact::I
   const Vector G = gradient_of_set(iterate, steps.at());
   const double norm = G.norm2();
   const auto direction = rcp(new Vector(G.getMap()));
-  const auto solved = solver::solve_for_direction(context, G, *direction,
-                                                  solver::newton_rules.beside_target * context.target_residual / norm);
+  const auto solved = solver::solve_for_direction(
+      context, G, *direction, solver::newton_rules.largest_residual * context.target_residual / norm);
   if (!solved.converged || !(direction->dot(solver::tpetra(steps.at().getF())) > 0))
     return steps.newton_to_end(Status::goes_on);
   direction->scale(-1.);

@@ -85,7 +85,7 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeNewton(Teuchos::ParameterLi
   if (newton_.is_null()) newton_ = rcp(new NoxVector(u_, NOX::ShapeCopy));
   const auto result =
       solve_for_direction(*context_, F_.data(), newton_->data(),
-                          std::max(rough, newton_rules.beside_target * context_->target_residual / norm_F_));
+                          std::max(rough, newton_rules.largest_residual * context_->target_residual / norm_F_));
   ++context_->steps;
   ++context_->newton_steps;
   newton_->scale(-1.);

@@ -138,9 +138,8 @@ inline constexpr_rules CostModel cost_model;
 struct NewtonRules {
   Rule<double> forcing{5e-3, "newton.forcing", "|r|/|F| while the Hessian changes [-]",
                        "a rough direction leads down as well as an exact one"};
-  Rule<double> beside_target{0.1, "newton.beside_target", "|r| of a direction over the target of |F| [-]",
-                             "not measured"};
-  Rule<double> largest_residual{0.1, "newton.largest_residual", "|r|/|F| of any direction, at most [-]",
+  Rule<double> largest_residual{0.1, "newton.largest_residual",
+                                "|r| of a direction at most, over |F|, and at the end over the target of |F| [-]",
                                 "not measured"};
   Rule<double> cut_short{0.02, "newton.cut_short", "length of a step that ended at a kink [-]", "(4.6)"};
   Rule<double> to_the_minimum{1e-6, "newton.to_the_minimum", "|1 - length| of a step that has met no kink [-]",
