@@ -29,15 +29,13 @@ Teuchos::ParameterList muelu_defaults(const Map &dofs, const int dofs_per_node)
   // On several ranks there is always a level below the finest one, so that what is solved directly has gone to one rank.
   const GO rows = static_cast<GO>(dofs.getGlobalNumElements());
   const bool alone = dofs.getComm()->getSize() == 1;
-  const GO few = linear_rules.few_rows, most = muelu::has_repartitioning ? few : linear_rules.most_gathered_rows;
+  const GO few = linear_rules.few_rows;
   list.set("coarse: max size", alone ? static_cast<int>(few)
-                                     : static_cast<int>(std::clamp<GO>(rows / linear_rules.least_coarsening, 1, most)));
+                                     : static_cast<int>(std::clamp<GO>(rows / linear_rules.least_coarsening, 1, few)));
   if (muelu::has_repartitioning && !alone) { // the direct coarse solvers of 13.2 are wrong on a distributed matrix
     list.set("repartition: enable", true);
     list.set("repartition: partitioner", "zoltan2");
     list.set("repartition: start level", 1);
-    list.set("repartition: min rows per proc", int(linear_rules.least_rows_of_rank));
-    list.set("repartition: max imbalance", double(linear_rules.most_imbalance));
     list.set("repartition: rebalance P and R", false); // what reuse of prolongators asks for
     Teuchos::ParameterList &partitioner = list.sublist("repartition: params");
     partitioner.set("algorithm", "multijagged");

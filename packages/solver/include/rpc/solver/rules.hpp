@@ -76,11 +76,6 @@ struct LinearRules {
   Rule<int> muelu_degree{2, "linear.muelu_degree", "degree of MueLu's smoother [-]", "not measured"};
   Rule<GO> least_coarsening{4, "linear.least_coarsening", "rows over those of the last level on ranks [-]",
                             "what is solved directly has gone to one rank"};
-  Rule<int> least_rows_of_rank{5000, "linear.least_rows_of_rank", "rows of a rank with Zoltan2 [-]", "not measured"};
-  Rule<double> most_imbalance{1.3, "linear.most_imbalance", "rows of a rank over the mean, with Zoltan2 [-]",
-                              "not measured"};
-  Rule<GO> most_gathered_rows{300, "linear.most_gathered_rows", "rows of the coarsest level without Zoltan2 [-]",
-                              "their factor costs next to nothing"};
 
   // Factors, (4.10) - (4.12).
   Rule<GO> most_rows_on_each_rank{
