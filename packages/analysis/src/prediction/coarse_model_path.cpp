@@ -18,7 +18,7 @@ public:
   /// Begins at x, which moves with it.
   Path(CoarseModel &model, Unknowns &x)
       : model_(model), x_(x), moved_(model.points_moved(x)), at_(size()), change_(size()), aim_(size()),
-        tends_(size(), contact::State::open), pressure_(size())
+        pressure_(size())
   {
     system_.stiffness.resize(size());
     double force = 0, force_there = 0;
@@ -43,7 +43,7 @@ public:
       const double t = advance();
       if (!(t > 0)) return false;
       const double gap = products_ / (load_ * area_ * length_);
-      if (gap <= path_rules.model_gap || (settled_ && gap <= path_rules.early_model_gap)) return true;
+      if (gap <= path_rules.model_gap) return true;
       if (lengths.take(!(t < contact::interior_rules.short_step)) != Headway::Answer::stuck) continue;
       lengths.start_over();
       load_ *= contact::interior_rules.more_pressure;
@@ -98,13 +98,8 @@ private:
     x_.move(t, d_);
     moved_ = model_.points_moved(x_);
     products_ = 0;
-    settled_ = true;
     for (std::size_t i = 0; i < size(); ++i) {
-      const contact::InteriorPoint before = at_[i];
-      at_[i] = contact::moved(before, t, change_[i]);
-      const contact::State next = contact::tends_to(before, at_[i], law(i));
-      settled_ = settled_ && next == tends_[i];
-      tends_[i] = next;
+      at_[i] = contact::moved(at_[i], t, change_[i]);
       products_ += model_.data_[i].weight * contact::complementarity(at_[i], law(i));
     }
     mu_ = products_ / pairs_;
@@ -117,14 +112,12 @@ private:
   std::vector<contact::InteriorPoint> at_;     // (points)
   std::vector<contact::InteriorPoint> change_; // (points) of the step
   std::vector<contact::InteriorTarget> aim_;   // (points) its targets
-  std::vector<contact::State> tends_;          // (points)
   std::vector<double> pressure_;               // (points) of the linearized law, for no change of x [Pa]
   System system_;
   Unknowns elastic_, d_;
   double load_ = 0, length_ = 0; // pressure [Pa] and displacement [m] that tell what is small
   double area_ = 0, pairs_ = 0;  // sums of weights, once for each pair
   double mu_ = 0, products_ = 0; // of pairs, the latter in all [J/m^2], [J]
-  bool settled_ = false;         // no point has changed the state it tends to
 };
 
 /// @return whether x has come near the solution

@@ -86,7 +86,6 @@ struct PathRules {
   Rule<double> last_gap{1e-8, "path.last_gap", "gap that ends the path [-]", "not measured"};
   Rule<int> trial_changes{2, "path.trial_changes", "choices without progress from tried states [-]", "not measured"};
   Rule<double> model_gap{3e-6, "path.model_gap", "gap that ends the path on the coarser mesh [-]", "not measured"};
-  Rule<double> early_model_gap{3e-5, "path.early_model_gap", "the same where the last step has changed no state [-]", "not measured"};
 };
 inline constexpr_rules PathRules path_rules;
 
