@@ -44,7 +44,7 @@ ActiveSetLoop::ActiveSetLoop(contact::Iterate &iterate, const ActiveSetTolerance
   path_ = Path::behind; // it knows no friction
   turns_ = iterate_.points().dim == 3;
   confirmed_headway_ = Headway({choice_rules.idle_residual, turns_ ? choice_rules.most_idle_turns : 0});
-  headway_ = within(then == Then::nothing ? choice_rules.most_changes_tried : choice_rules.most_changes);
+  headway_ = within(choice_rules.most_changes);
 }
 
 void ActiveSetLoop::starts_predicted(const FoundBy coarser, MakeCoarseChoice coarse_choice)

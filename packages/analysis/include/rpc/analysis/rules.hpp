@@ -16,7 +16,6 @@ struct ChoiceRules {
   // When choices by pressures end
   Rule<int> most_idle{6, "choice.most_idle", "choices without progress [-]", "measurements.md: Limits on active-set updates"};
   Rule<int> most_changes{10, "choice.most_changes", "choices with friction, with progress or not [-]", "not measured"};
-  Rule<int> most_changes_tried{3, "choice.most_changes_tried", "the same after a Tresca problem [-]", "not measured"};
   Rule<int> most_changes_resumed{30, "choice.most_changes_resumed",
                                  "choices without progress after Newton's steps were blocked at kinks [-]",
                                  "not measured; slender bodies need them"};
