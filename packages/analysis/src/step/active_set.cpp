@@ -2,6 +2,7 @@
 #include "rpc/analysis/active_set.hpp"
 
 #include "rpc/analysis/rules.hpp"
+#include "rpc/core/rules.hpp"
 #include "rpc/solver/rules.hpp"
 
 #include <algorithm>
@@ -38,12 +39,12 @@ ActiveSetLoop::ActiveSetLoop(contact::Iterate &iterate, const ActiveSetTolerance
       start_(iterate.hessian()->getDomainMap()),
       rough_(iterate.points().num_total > iterate.points().num_fixed), // else there is no state to choose
       rubs_(iterate_.points().friction.anywhere), then_(then), headway_(within(choice_rules.most_idle)),
-      confirmed_headway_({choice_rules.idle_residual, 0}), trial_gap_(path_rules.trial)
+      confirmed_headway_({headway_rules.falls, 0}), trial_gap_(path_rules.trial)
 {
   if (!rubs_) return;
   path_ = Path::behind; // it knows no friction
   turns_ = iterate_.points().dim == 3;
-  confirmed_headway_ = Headway({choice_rules.idle_residual, turns_ ? choice_rules.most_idle_turns : 0});
+  confirmed_headway_ = Headway({headway_rules.falls, turns_ ? choice_rules.most_idle_turns : 0});
   headway_ = within(choice_rules.most_changes);
 }
 

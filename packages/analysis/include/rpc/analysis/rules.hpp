@@ -34,7 +34,6 @@ struct ChoiceRules {
   Rule<GO> few_changes{5, "choice.few_changes", "changed points up to which overshoot ends nothing [-]", "measurements.md: Limits on active-set updates"};
   // Where an active set is confirmed
   Rule<int> most_updates{2, "choice.most_updates", "multiplier updates at the end, even if pressures miss their tolerance then [-]", "not measured"};
-  Rule<double> idle_residual{0.5, "choice.idle_residual", "residual over the least before: a step that leaves more is idle [-]", "not measured"};
   Rule<int> most_idle_turns{4, "choice.most_idle_turns", "idle steps in a row, friction in space [-]", "not measured"};
   Rule<double> negligible{1e-3, "choice.negligible", "violations that change no state, over the tolerance of pressures [-]", "not measured"};
   // When a coarser mesh chooses
