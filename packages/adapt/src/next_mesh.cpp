@@ -88,7 +88,7 @@ bool MeshPlanner::nothing_gained(const double eta, const double target, const do
                                  const mesh::Element &element) const
 {
   const double most = static_cast<double>(task_.adapt.max_dofs);
-  if (!(planned_at_limit_ && dofs > plan_rules.filled * plan_rules.share_of_max_dofs * most)) return false;
+  if (!(planned_at_limit_ && dofs > plan_rules.share_again * plan_rules.share_of_max_dofs * most)) return false;
   const double needed = dofs * growth_for(eta / target, element);
   const double needed_before = before_.dofs * growth_for(before_.eta / target, element);
   return eta > plan_rules.hardly_less * before_.eta ||

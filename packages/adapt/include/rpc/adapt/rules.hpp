@@ -32,9 +32,10 @@ struct PlanRules {
   // gmsh makes more cells or fewer than it is asked for; after the first mesh at the limit it is known how many.
   Rule<double> share_of_max_dofs{0.75, "plan.share_of_max_dofs", "of Max Dofs that is planned for [-]; off: 1",
                                  "not measured"};
-  Rule<double> share_again{0.9, "plan.share_again", "the same after a mesh at the limit [-]; off: 1", "not measured"};
-  Rule<double> filled{0.9, "plan.filled", "part of the planned unknowns that makes a mesh one at the limit [-]",
-                      "not measured"};
+  Rule<double> share_again{0.9, "plan.share_again",
+                           "the same after a mesh at the limit, and part of the planned unknowns that makes a mesh one "
+                           "at the limit [-]; off: 1",
+                           "not measured"};
   Rule<double> hardly_less{0.97, "plan.hardly_less", "estimate over the one before that is no better [-]; off: 1",
                            "not measured"};
   Rule<int> most_tries{5, "plan.most_tries", "meshes after a solution until one is not too large [-]; off: 1",
