@@ -179,7 +179,7 @@ bool LinearSolver::Impl::sparse_pays(const double iterations_in_all, const doubl
 /// The same at the present rate of a solve.
 bool LinearSolver::Impl::sparse_pays_now(const Convergence &seen, const double tolerance)
 {
-  if (seen.iterations() < options.first_iterations) return false;
+  if (seen.iterations() < linear_rules.first_iterations) return false;
   return sparse_pays(seen.iterations_in_all(tolerance, options.max_iterations), tolerance) &&
          seen.iterations() * seconds_of_cg.measured >= linear_rules.part_to_tell * sparse->prospect().cost.seconds;
 }

@@ -56,10 +56,7 @@ solver::LinearSolverOptions tuned(solver::LinearSolverOptions options, const Pro
   if (d.kinematics == fem::Kinematics::plane_stress) return options; // nothing is nearly incompressible
   const double nu = largest_ratio(d, materials);
   options.expected_iterations = expected_iterations(*d.mesh, nu);
-  if (is_mixed) {
-    options.expected_iterations = expected_of_mixed_form(*d.mesh, nu);
-    options.first_iterations = std::max<int>(options.first_iterations, linear_rules.first_iterations_of_mixed);
-  }
+  if (is_mixed) options.expected_iterations = expected_of_mixed_form(*d.mesh, nu);
   options.rough_part = rough_part(nu);
   return options;
 }

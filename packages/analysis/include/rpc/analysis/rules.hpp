@@ -130,8 +130,6 @@ struct LinearRules {
   // Iterations to expect, to 1e-8
   Rule<double> expected_of_mixed{30, "body.expected_of_mixed", "of the mixed form [CG iterations]", "theory.md (4.10d)"};
   Rule<double> cost_of_step{0.035, "body.cost_of_step", "step of the polynomial for pressures [CG iterations]", "theory.md (4.10d)"};
-  Rule<int> first_iterations_of_mixed{40, "body.first_iterations_of_mixed",
-                                      "iterations of the mixed form before a sparse factor is considered [-]", "not measured"};
   Rule<double> expected{4, "body.expected", "of other bodies, times (1 - 2 nu)^(-1/2) [CG iterations]", "theory.md (4.10b)"};
   Rule<double> expected_of_p1{6, "body.expected_of_p1", "the same of P1 [CG iterations]", "theory.md (4.10b)"};
   Rule<double> expected_of_stretched{3, "body.expected_of_stretched", "of stretched P1, times (1 - 2 nu)^(-3/4) [CG iterations]",

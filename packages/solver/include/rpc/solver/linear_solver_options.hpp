@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "rpc/solver/rules.hpp"
-
 #include <Teuchos_ParameterList.hpp>
 #include <string>
 
@@ -19,8 +17,6 @@ struct LinearSolverOptions {
   double damping = 4. / 3;               ///< of algebraic prolongators for the whole matrix, unless `muelu` says it
   double expected_iterations =
       0; ///< of CG to 1e-8 with multigrid, where the body lets expect many; 0: not known. No parameter.
-  int first_iterations =
-      linear_rules.first_iterations; ///< of a solve before a sparse factor is considered. No parameter.
   double rough_part =
       1; ///< rough solves (Accuracy::error > 0) leave this part of what they are asked to leave, in (0, 1]. No parameter.
   Teuchos::ParameterList belos; ///< on top of the defaults
