@@ -222,8 +222,8 @@ std::vector<char> joined_stacks(const Sheets &sheets, const Neighbours &neighbou
   std::vector<char> joined(stacks.size(), 0);
   for (std::size_t s = 0; s < stacks.size(); ++s) {
     for (const auto &sheet : stacks[s].sheets) thickness[s] += sheets.thickness[sheet.first] / stacks[s].size();
-    const int enough = stacks[s].closed ? coarsening_rules.shortest_ring : 2;
-    joined[s] = stacks[s].size() >= enough ? 1 : 0;
+    const int fewest_cells = stacks[s].closed ? 3 : 1; // around a hole
+    joined[s] = stacks[s].size() >= 2 * fewest_cells ? 1 : 0;
     if (joined[s]) least[s] = thickness[s];
   }
   const std::vector<char> can_be = joined;

@@ -19,8 +19,6 @@ struct CoarseningRules {
                                 "cells of a coarser mesh on each of its ranks [-]", "not measured"};
   Rule<double> equally_long{1.7, "coarsening.equally_long", "node distance or sheet, over the least, still alike [-]",
                             "doc/theory.md (4.7e)"};
-  Rule<int> shortest_ring{6, "coarsening.shortest_ring", "sheets around a hole that may be joined in pairs [-]",
-                          "not measured: half as many cells are still cells"};
 };
 inline constexpr_rules CoarseningRules coarsening_rules;
 
