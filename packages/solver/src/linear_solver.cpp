@@ -87,6 +87,7 @@ struct LinearSolver::Impl {
   std::vector<Candidate> candidates;
   Factor *sparse;               // the first of them
   const Mixed *mixed = nullptr; // null: the deck, the mesh or the body rules it out
+  Algebraic *algebraic;         // the last of them
   Krylov krylov;
   int solves_to_come = 1;               // about
   bool may_be_sparse;                   // the deck leaves the preconditioner open, and memory may do
@@ -135,7 +136,7 @@ LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &
   sparse = consider<Factor>(Kind::sparse, State::waits, H);
   if (mixed_form && want_meshes) mixed = consider<Mixed>(Kind::mixed, State::open, H, std::move(mixed_form), options);
   if (levels && want_meshes) consider<Meshes>(Kind::meshes, State::open, H, std::move(levels), options);
-  consider<Algebraic>(Kind::algebraic, State::open, H, body, options);
+  algebraic = consider<Algebraic>(Kind::algebraic, State::open, H, body, options);
   may_be_sparse = automatic && unknowns <= linear_rules.most_sparse_rows;
   if (sum_all(*H->getDomainMap()->getComm(), static_cast<GO>(H->nodes().extent(0))) > 0)
     solves_to_come = linear_rules.solves_with_contact;
@@ -315,11 +316,13 @@ bool LinearSolver::Impl::goes_on(const Outcome outcome, const std::string &reaso
   return (now.kind != Kind::mixed && take_sparse(reason)) || leave(now, State::left, reason);
 }
 
-/// The next one is used from now on. @return whether there is one
+/// The next one is used from now on; of an algebraic hierarchy it is its stronger form. @return whether there is one
 bool LinearSolver::Impl::leave(Candidate &candidate, const State state, const std::string &reason)
 {
-  if (candidate.kind == Kind::algebraic) return false;
-  put_out(candidate, state, reason);
+  if (candidate.kind != Kind::algebraic)
+    put_out(candidate, state, reason);
+  else if (!algebraic->strengthen())
+    return false;
   record(first(), reason);
   return true;
 }

@@ -96,10 +96,12 @@ Teuchos::ParameterList valid_linear_solver_parameters()
                    "Handed to Belos: to `Method`, and with friction to the GMRES in its place, to each what it knows. "
                    "`Num Blocks` iterations of GMRES keep two vectors each, one with `Flexible Gmres` = `false`, which "
                    "takes two products with the preconditioner more for each solve.");
-  set_pass_through(valid, "MueLu",
-                   "Handed to MueLu as it is, on top of smoothed aggregation with Chebyshev smoothing. Without it, a "
-                   "sparse factor takes over "
-                   "where that takes less time than the CG iterations that are left.");
+  set_pass_through(
+      valid, "MueLu",
+      "Handed to MueLu as it is, on top of smoothed aggregation with Chebyshev smoothing. Without it, a "
+      "sparse factor takes over "
+      "where that takes less time than the CG iterations that are left. Where there is none, and CG fails, "
+      "the smoother becomes stronger, unless the coarse size or the smoother are given here.");
   return valid;
 }
 

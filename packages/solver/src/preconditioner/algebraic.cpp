@@ -22,10 +22,18 @@ Teuchos::ParameterList list_for(const Map &dofs, const int dofs_per_node, const 
   return list;
 }
 
+bool leaves_strength_open(const Teuchos::ParameterList &user)
+{
+  for (const char *name : {"coarse: max size", "smoother: type", "smoother: params"})
+    if (user.isParameter(name)) return false;
+  return true;
+}
+
 } // namespace
 
 Algebraic::Algebraic(RCP<const UpdatedOperator> H, Body body, const LinearSolverOptions &options)
-    : H_(std::move(H)), body_(std::move(body)), muelu_(list_for(*H_->getDomainMap(), body_.dim, options))
+    : H_(std::move(H)), body_(std::move(body)), muelu_(list_for(*H_->getDomainMap(), body_.dim, options)),
+      may_strengthen_(leaves_strength_open(options.muelu))
 {
 }
 
@@ -108,6 +116,16 @@ void Algebraic::apply_to_residual(const MultiVector &r, MultiVector &y) const
 bool Algebraic::renew()
 {
   if (is_fresh_ && !is_renewed_) return false;
+  forget();
+  return true;
+}
+
+bool Algebraic::strengthen()
+{
+  if (!may_strengthen_ || std::exchange(strengthened_, true)) return false;
+  Teuchos::ParameterList &smoother = muelu_.sublist("smoother: params");
+  smoother.set("chebyshev: degree", int(linear_rules.strong_degree));
+  smoother.set("chebyshev: ratio eigenvalue", double(linear_rules.strong_ratio));
   forget();
   return true;
 }

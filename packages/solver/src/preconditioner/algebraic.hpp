@@ -24,7 +24,7 @@ public:
 
   Prepared prepare() override;
   void forget() override;
-  std::string name() const override { return "algebraic"; }
+  std::string name() const override { return strengthened_ ? "stronger algebraic" : "algebraic"; }
 
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
              double beta = 0) const override;
@@ -34,6 +34,10 @@ public:
   RCP<const Map> getRangeMap() const override { return H_->getRangeMap(); }
 
   bool renew() override;
+  /// A stronger smoother, for nearly incompressible or badly shaped cells, where aggregation misses slow modes and a factor would be too
+  /// large. At most once, and not against what the deck asks for.
+  /// @return whether it is another preconditioner now, to be made from nothing
+  bool strengthen();
 
 private:
   void set_up();
@@ -42,6 +46,7 @@ private:
   RCP<const UpdatedOperator> H_;
   Body body_;
   Teuchos::ParameterList muelu_;
+  bool may_strengthen_; // the deck leaves coarse size and smoother to rpc
 
   RCP<CrsMatrix> A_;               // K with a bounded update; null: none was made yet
   DeviceView<double ***> written_; // (nodes of H, dim, dim) that update
@@ -50,6 +55,7 @@ private:
   int revision_ = -1;       // of H when it was last brought to it
   bool is_fresh_ = false;   // no states have changed since the last set-up
   bool is_renewed_ = false; // the last set-up reused the one before
+  bool strengthened_ = false;
 };
 
 } // namespace rpc::solver

@@ -74,6 +74,9 @@ struct LinearRules {
   Rule<double> patch_work{3e3, "linear.patch_work", "multiplications of a patch's factor, a row of H [-]",
                           "a fraction of a set-up"};
   Rule<int> muelu_degree{2, "linear.muelu_degree", "degree of MueLu's smoother [-]", "not measured"};
+  Rule<int> strong_degree{8, "linear.strong_degree", "degree of the stronger smoother [-]",
+                          "Q2, nu = 0.49999 with Multigrid = mesh fails without it"};
+  Rule<double> strong_ratio{50, "linear.strong_ratio", "ratio of the stronger smoother [-]", "the same"};
   Rule<GO> least_coarsening{4, "linear.least_coarsening", "rows over those of the last level on ranks [-]",
                             "what is solved directly has gone to one rank"};
 
