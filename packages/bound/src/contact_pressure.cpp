@@ -132,6 +132,7 @@ ContactIntegrals contact_integrals(const int order, const OfFacet &v, const OfFa
   ContactIntegrals sum;
   parts.integrate(law.circle ? 6 : 3, [&](const double x, const double w) {
     const double deep = depth(x), p_here = std::max(0., pressure(x)), here = law.circle ? circle(x) : 1;
+    if (!(here > 0)) return; // at a root on the axis, off it by rounding
     const double yield = rigid ? law.limit[0] : here * std::max(0., limit(x));
     const contact::Foundation f{yield, law.rise * here, law.spring / here}; // (13.10d)
     const double of_conjugate = law.circle && nearest > 0 ? here * beside_inverse(here, nearest, farthest, true) : 1;

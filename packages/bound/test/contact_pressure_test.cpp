@@ -107,6 +107,41 @@ TEST(ContactIntegrals, AreThoseOfTheLawWithSpringsAndHardening)
   EXPECT_NEAR(quadratic.gap, linear.gap, 1e-14);
 }
 
+TEST(ContactIntegrals, OfRevolutionAreNoSmallerThanThoseOfManyPointsAndNear)
+{
+  // v from -0.3 to 0.9, xi = 2, H = 4, c = 0.1, all with 2 pi r, from the axis on or off it: open, elastic and yielding.
+  const double H = 4, c = 0.1, xi = 2;
+  for (const auto &[first, last] : {std::array<double, 2>{0, 6}, {6, 0}, {1.5, 6}, {2, 1}})
+    for (const int order : {1, 2})
+      for (const double rise : {0., H}) {
+        SCOPED_TRACE(testing::Message() << first << " to " << last << ", order " << order << ", H " << rise);
+        const double middle = (first + last) / 2, most = rise > 0 ? 3.5 : xi;
+        const OfFacet circle = order == 1 ? OfFacet{first, last, 0} : OfFacet{first, middle, last},
+                      traction = order == 1 ? OfFacet{0.3 * first, most * last, 0}
+                                            : OfFacet{0.3 * first, 0.5 * most * middle, most * last};
+        const auto between = [&](const OfFacet &b, const double x) {
+          return order == 1 ? b[0] + x * (b[1] - b[0])
+                            : b[0] * (1 - x) * (1 - x) + 2 * b[1] * x * (1 - x) + b[2] * x * x;
+        };
+        const auto at = [&](const double x, const bool energy) {
+          const double around = between(circle, x), v = -0.3 + 1.2 * x, p = between(traction, x) / around,
+                       beyond = v - c * xi, above = std::max(0., p - xi);
+          const double psi = v < 0        ? 0
+                             : beyond < 0 ? v * v / (2 * c)
+                                          : xi * (v - c * xi / 2) + rise * beyond * beyond / (2 * (1 + c * rise));
+          const double conjugate = c * p * p / 2 + (rise > 0 ? above * above / (2 * rise) : 0);
+          return around * (energy ? psi : psi + conjugate - p * v);
+        };
+        const ContactIntegrals found =
+            contact_integrals(order, {-0.3, 0.9, 0.3}, traction, {{xi, xi, xi}, rise, c, circle});
+        EXPECT_NEAR(found.energy, midpoints([&](const double x) { return at(x, true); }), 1e-8);
+        const double gap = midpoints([&](const double x) { return at(x, false); });
+        const bool exact = first == 0 || last == 0;
+        EXPECT_GT(found.gap, gap + (exact ? -1e-8 : 1e-7));
+        EXPECT_LT(found.gap, gap + (exact ? 1e-8 : 0.05 * gap));
+      }
+}
+
 TEST(FrictionIntegrals, AreThoseOfHandAlgebra)
 {
   // e = 2 x - 1, q = 1, s = 2: s |e| has 1, q e has 0.
