@@ -44,6 +44,21 @@ TEST(ErrorBoundOfRevolution, IsNearlyNothingWhereTheElementsHaveTheSolution)
   }
 }
 
+TEST(ErrorBoundOfRevolution, IsNearlyNothingUnderAForceAlongTheRadius)
+{
+  // Between smooth plates u_r = A r - f r^2/(3 (lambda + 2 mu)), and s_rr = 0 at r = 1.
+  const double lambda = 400, mu = 400, modulus = lambda + 2 * mu, f = -30, B = -f / (3 * modulus),
+               A = -(2 * modulus + lambda) * B / (2 * (lambda + mu));
+  const double energy = -f * 2 * pi * (A / 3 + B / 4) / 2; // - int f u_r/2
+  for (const std::string element : {"P2", "Q2"}) {
+    SCOPED_TRACE(element);
+    const Solution s = bounded(element, {"Dirichlet->top->X=", "Dirichlet->top->Y=0", "Body Force->X=-30"});
+    EXPECT_LE(s.bound->lower, energy);
+    EXPECT_GE(s.bound->upper, energy);
+    EXPECT_LT(s.bound->upper - s.bound->lower, 1e-4 * std::abs(energy));
+  }
+}
+
 TEST(ErrorBoundOfRevolution, HoldsTheForceOfAWavyBedInFullContact)
 {
   // In a rigid smooth tube the mean of the strain along the axis fixes the force, whatever the pressure is:

@@ -3,6 +3,7 @@
 
 #include "facet_polynomials.hpp"
 #include "rpc/contact/law/foundation.hpp"
+#include "space_boundary.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -284,6 +285,50 @@ TEST(QuadraticTriangle, HasIntegralsNoSmallerThanThoseOfManyPointsAndNear)
   const ContactIntegrals rigid = contact_integrals(2, off, two, {{inf, inf, inf, inf, inf, inf}});
   EXPECT_EQ(rigid.energy, 0);
   EXPECT_NEAR(rigid.gap, 2 * 6. / 6, 1e-14);
+}
+
+TEST(QuadraticTriangle, CountsTheLargestLimitInEnergiesAndTheLeastInConjugates)
+{
+  // v = 0.3 all over, so that psi is a polynomial, and p - xi has a root where xi varies much.
+  const OfTriangle v = {0.3, 0.3, 0.3, 0.3, 0.3, 0.3}, p = {9, 0, 3, 8, 1, 2}, limit = {1, 9, 5, 2, 7, 4};
+  const TriangleLaw law{limit, 0.5, 0};
+  const double mean = (1 + 9 + 5 + 2 + 7 + 4) / 6., psi = 0.3 * mean + 0.5 * 0.3 * 0.3 / 2;
+  const FacetRule rule = refined(3, facet_rule(3, 3), 100);
+  double rest = 0;
+  for (int q = 0; q < rule.size(); ++q) {
+    const double here = value_of(2, p, rule.point[q]);
+    rest += rule.weight[q] *
+            (contact::conjugate_energy(here, {value_of(2, limit, rule.point[q]), law.rise, law.spring}) - 0.3 * here);
+  }
+  const ContactIntegrals found = contact_integrals(2, v, p, law);
+  EXPECT_GT(found.energy, psi * (1 + 1e-6));
+  EXPECT_LT(found.energy, psi * 1.03);
+  EXPECT_GT(found.gap - found.energy, rest * (1 + 1e-6));
+  EXPECT_LT(found.gap - found.energy, rest * 1.03);
+}
+
+TEST(QuadraticTriangle, HandsThePressureAndTheFrictionOfItsDegreeToTheBody)
+{
+  SpaceInput in;
+  in.reference.degree = 2;
+  in.tables = facet_tables(2);
+  SpaceBoundary boundary;
+  SpaceContact c = quadratic_square(1, inf, [](const double, const double) { return 0.; });
+  c.friction.acts = true;
+  c.axis = {{{1, 0, 0}, {0, -1, 0}}};
+  boundary.tractions.load = DeviceView<double ***>("load", 2, FacetPolynomials::count(3, 3), 3);
+  boundary.sides.push_back(c);
+  const OfTriangle p = {1, 4, 2, 7, 3, 5}, q = {0.3, -1, 0.5, 2, 0.1, -0.7}, r = {1, 0.2, 0.4, -0.3, 1.5, 2};
+  const BoundaryTractions all = with_contact(in, boundary, {{{p, p}, {{{q, q}, {r, r}}}}});
+  const FacetPolynomials polynomials(3, 3);
+  for (const Barycentric &at : facet_rule(3, 3).point) {
+    const double wanted[3] = {-value_of(2, q, at), value_of(2, r, at), value_of(2, p, at)};
+    for (int i = 0; i < 3; ++i) {
+      double traction = 0;
+      for (int j = 0; j < polynomials.size(); ++j) traction += all.load(1, j, i) * polynomials(j, at) / c.area[1];
+      EXPECT_NEAR(traction, wanted[i], 1e-12);
+    }
+  }
 }
 
 TEST(QuadraticTriangle, HasFrictionNoSmallerThanThatOfManyPointsAndNear)
