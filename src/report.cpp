@@ -278,6 +278,18 @@ void print_bound(std::ostream &out, const Scene &scene, const Solution &s)
                                            number_text("%.6g", force.upper) + "] " + of_force
                                      : "unknown of " + side + ": " + force.missing);
   }
+  for (const bound::GoalBound &goal : b.goals) {
+    const std::string name = "\"" + goal.goal.name + "\"";
+    print_text(out, "guaranteed goal",
+               goal.missing.empty()
+                   ? name + " = " + number_text("%.6g", goal.value) + ", the exact one in [" +
+                         number_text("%.6g", goal.lower) + ", " + number_text("%.6g", goal.upper) + "] " +
+                         scene.model.units.of(bound::unit_of(goal.goal.type), s.discretization.per_length()) +
+                         (std::isnan(goal.estimated_error) ? ""
+                                                           : "; estimated (not guaranteed): " +
+                                                                 number_text("%.6g", goal.value + goal.estimated_error))
+                   : name + " has no interval: " + goal.missing);
+  }
 }
 
 /// Where error bars come from, or how to have them.

@@ -82,6 +82,7 @@ Teuchos::ParameterList valid_deck()
   valid.sublist("Steps") = analysis::valid_steps_parameters();
   valid.sublist("Nested Iteration") = analysis::valid_prediction_parameters();
   valid.sublist("Adapt") = adapt::valid_adapt_parameters();
+  valid.sublist("Goals") = bound::valid_goal_parameters();
   valid.sublist("Uzawa") = analysis::valid_uzawa_parameters();
   valid.sublist("NOX") = solver::valid_newton_parameters();
   valid.sublist("Linear Solver") = solver::valid_linear_solver_parameters();
@@ -170,6 +171,7 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
               "deck: \"Time\" = " << scene.time << " does not go with \"Steps\", which have times of their own");
   analysis::set_obstacle_origins(scene);
   scene.adapt = adapt::adapt_options(deck.sublist("Adapt"));
+  scene.goals = bound::goal_options(deck.sublist("Goals"), dim);
   scene.step.uzawa = analysis::uzawa_options(deck.sublist("Uzawa"));
   scene.step.newton = solver::newton_options(deck.sublist("NOX"));
   scene.linear_solver = solver::linear_solver_options(deck.sublist("Linear Solver"));

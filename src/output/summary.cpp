@@ -132,6 +132,20 @@ void add_balance(nlohmann::ordered_json &json, const Scene &scene, const Solutio
   json["energy_tolerance"]["at"] = off.at;
 }
 
+nlohmann::ordered_json goals_json(const std::vector<bound::GoalBound> &goals)
+{
+  auto json = nlohmann::ordered_json::object();
+  for (const bound::GoalBound &b : goals) {
+    nlohmann::ordered_json &goal = json[b.goal.name];
+    goal["type"] = bound::name_of(b.goal.type);
+    goal["value"] = maybe(b.value);
+    goal["estimated_error"] = maybe(b.estimated_error);
+    goal["interval"] = b.missing.empty() ? nlohmann::ordered_json({b.lower, b.upper}) : nlohmann::ordered_json();
+    goal["reason"] = b.missing;
+  }
+  return json;
+}
+
 nlohmann::ordered_json bound_json(const bound::EnergyBound &b)
 {
   nlohmann::ordered_json json;
@@ -158,9 +172,15 @@ nlohmann::ordered_json bound_json(const bound::EnergyBound &b)
   return json;
 }
 
+void add_bound_and_goals(nlohmann::ordered_json &json, const bound::EnergyBound &b)
+{
+  json["error_bound"] = bound_json(b);
+  if (!b.goals.empty()) json["goals"] = goals_json(b.goals);
+}
+
 void add_bound(nlohmann::ordered_json &json, const Scene &scene, const Solution &s)
 {
-  if (s.bound) json["error_bound"] = bound_json(*s.bound);
+  if (s.bound) add_bound_and_goals(json, *s.bound);
   if (scene.adapt.bound != adapt::ErrorBound::estimated || !s.has_results() || !s.estimate) return;
   const double bar = errors_of(scene, s).energy;
   const bool known = !std::isnan(bar);
@@ -180,7 +200,7 @@ nlohmann::ordered_json cycle_json(const adapt::Cycle &c, const ResultScope &scop
     if (q.shown.meshes) json[q.name(scope)] = c.contact.*q.value;
   json["newton_iterations"] = c.newton_iterations;
   json["linear_iterations"] = c.linear_iterations;
-  if (c.bound) json["error_bound"] = bound_json(*c.bound);
+  if (c.bound) add_bound_and_goals(json, *c.bound);
   json["seconds"] = c.seconds;
   return json;
 }

@@ -11,9 +11,9 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "regression"))
 from rpc_run import SMALL, SOURCE, RpcTestCase  # noqa: E402
 
-NAMED = {"contact_patches", "contact_sides", "force_displacement", "reaction_force", "rigid", "side_displacement"}  # their keys are names of the deck
+NAMED = {"contact_patches", "contact_sides", "force_displacement", "goals", "reaction_force", "rigid", "side_displacement"}  # their keys are names of the deck
 MODELS = {"beam": ["--input=beam.xml", SMALL, "--set=Steps->Times={0.5, 1}", "--set=Adapt->Estimate Error=true"],
-          "beam_adaptive": ["--input=beam_adaptive.xml", "--set=Adapt->Target Relative Error=0.02", "--set=Adapt->Error Bound=guaranteed"],
+          "beam_adaptive": ["--input=beam_adaptive.xml", "--set=Adapt->Target Relative Error=0.02", "--set=Adapt->Error Bound=guaranteed", "--set=Goals->top->Component=Y"],
           "shear": ["--input=shear.xml", "--set=Mesh->Cells={12, 6}", "--set=Steps->Times={1, 1.5}"],
           "block": ["--input=block.xml", "--set=Mesh->Cells={4, 4, 2}", "--set=Contact->Friction Coefficient=0.2"]}
 STEPPED = {"beam", "shear"}  # their runs write a history

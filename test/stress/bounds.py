@@ -13,7 +13,9 @@ triangles: then the reference is the last mesh of the same run. In space the bod
 hexahedra of order 1 (--element), and no laws have dents; the reference has cells of P2 half as long, of P2 a third: its interval must meet that of the scene,
 its contact force must lie in the interval of the force, where there is one, but for what its error makes of it, and LARGE is that of LARGE_IN_SPACE. With --kind=revolution the plane
 bodies are sections of bodies of revolution, on their axis or with a hole, no laws have dents, and LARGE is LARGE_OF_REVOLUTION. With --corners=1 loads do not end at the corners: stresses jump with the direction there, which stresses with prescribed tractions resolve
-worse than displacements. The exit code is 1 if a scene failed, an effectivity is below 1 by more than its reference may be off, or the median exceeds LARGE.
+worse than displacements. Each scene has goals, two mean displacements and the pressure of a part of the bottom, of revolution this pressure alone, and fails where an interval does
+not hold that of the reference (in space the displacements alone). The exit code is 1 if a scene failed, an effectivity is below 1 by more than its reference may be off, or the
+median exceeds LARGE.
 """
 import dataclasses
 import json
@@ -140,6 +142,14 @@ def revolved(rng, place, element, ends, corners):
     return lists, halves, lambda s, t: (place(s, t)[0] + hole, place(s, t)[1])
 
 
+def goals(rng, length, sides, axes, start=0.0):
+    """Two mean displacements, and the pressure of a part of the bottom. @param start, length  of the bottom along x"""
+    ends = sorted(start + rng.uniform(-0.2, 1.2) * length for _ in range(2))
+    far = [99.0] * (len(axes) - 1)
+    return {"one": {"Side": rng.choice(sides), "Component": rng.choice(axes)}, "other": {"Side": "bottom", "Component": rng.choice(axes)},
+            "part": {"Side": "bottom", "Type": "mean pressure", "Box": [ends[0], *(-x for x in far), ends[1], *far]}}
+
+
 def solid(rng):
     """(parameters of a Bricks, by the element and how much finer it is; whether there are two materials)"""
     number = [rng.randint(3, 6), rng.randint(3, 5), rng.randint(3, 5)]
@@ -191,10 +201,11 @@ def deck_in_space(rng, halves):
     return lists
 
 
-def runs_in_space(rng, element, laws=None):
+def runs_in_space(rng, wanted, element, laws=None):
     """(deck, output, body, settings) of the scene and of its reference."""
     body, halves = solid(rng)
     lists = deck_in_space(rng, halves)
+    lists["Goals"] = goals(wanted, 1.0, ["top", "right", "bottom", "left", "back", "front"], "XYZ")
     while laws and law(laws, contact := dict(lists["Contact"]), load_of(lists), 1000.0):
         pass  # a step with dents needs nested meshes
     if laws:
@@ -226,6 +237,8 @@ class Outcome:
     complaint: str = ""
     refused: bool = False
     exact: bool = False  # the mesh represents the solution
+    goals: typing.List[float] = dataclasses.field(default_factory=list)  # widths of intervals over the numbers
+    untold: int = 0  # goals without an interval
 
 
 def run(options, folder, output, *more):
@@ -239,7 +252,7 @@ def judge(options, number):
     rng = random.Random(f"{options.seed}/bounds/{number}")
     if options.kind == "space":
         laws = random.Random(f"{options.seed}/laws/{number}") if options.laws else None
-        return judge_runs(options, number, options.element, *runs_in_space(rng, options.element, laws))
+        return judge_runs(options, number, options.element, *runs_in_space(rng, random.Random(f"{options.seed}/goals/{number}"), options.element, laws))
     element = ["P1", "P2", "Q1", "Q2"][number % 4]
     place, nx, ny, cut_x, cut_y = shape(rng)
     ends = {"top": ("x", place(0, 1)[0], place(1 - cut_x / nx, 1)[0]), "right": ("y", 0.0, place(1, 1 - cut_y / ny)[1])}
@@ -252,6 +265,10 @@ def judge(options, number):
             lists["Contact"] = contact
     else:
         lists, halves = deck(rng, ends, options.corners)
+    start, wanted = place(0, 0)[0], random.Random(f"{options.seed}/goals/{number}")
+    lists["Goals"] = goals(wanted, place(1, 0)[0] - start, ["top", "right", "bottom", "left"], "XY", start)
+    if options.kind == "revolution":  # no mean displacements
+        lists["Goals"] = {"part": lists["Goals"]["part"]}
     if options.kind == "plane" and options.laws and law(laws, lists["Contact"], load_of(lists), 1000.0):
         return judge_dents(options, number, laws, lists, (place, nx, ny, cut_x, cut_y, halves))
     grids = [mesh_of(rng, element, place, nx, ny, cut_x, cut_y, halves), grid_of("P2", place, nx, ny, cut_x, cut_y, halves, FINER)]
@@ -264,9 +281,10 @@ def judge_runs(options, number, element, lists, runs):
     outcome = Outcome(number, element)
     folder = pathlib.Path(tempfile.mkdtemp(prefix=f"rpc_bounds_{number}_"))
     try:
-        (folder / "scene.yaml").write_text(trials.written({"scene": lists}, 0))
         found = []
         for output, body, more in runs:
+            certain = output == "out" or options.kind != "space"
+            (folder / "scene.yaml").write_text(trials.written({"scene": {key: of for key, of in lists.items() if certain or key != "Goals"}}, 0))
             (folder / "body.msh").write_text(body.msh(1.0))
             result, summary = run(options, folder, output, *more)
             if result.returncode == REFUSED:
@@ -280,6 +298,7 @@ def judge_runs(options, number, element, lists, runs):
                 return outcome
             found.append(summary)
         compare(outcome, *found)
+        compare_goals(outcome, lists["Goals"], *found)
         if options.kind != "plane":
             compare_forces(outcome, *found)
     except Exception as error:  # a run that took too long, a file that is no JSON
@@ -323,6 +342,7 @@ def judge_dents(options, number, rng, lists, shape_of):
             return outcome
         last = cycles[-1]
         half = last["relative_estimate"] ** 2 * summary["energy_norm_squared"] / 2
+        compare_goals(outcome, lists["Goals"], cycles[0], last)
         compare(outcome, cycles[0], {"error_bound": last["error_bound"], "error_estimate": {"energy_norm": math.sqrt(2 * half)}})
     except Exception as error:  # a run that took too long, a file that is no JSON
         outcome.complaint = f"{type(error).__name__}: {error}"[:300]
@@ -348,6 +368,25 @@ def compare(outcome, summary, reference):
     slack = 1e-12 * (abs(high) + abs(low))
     if low > high_there + slack or low_there > high + slack:
         outcome.complaint = f"[{low!r}, {high!r}] and [{low_there!r}, {high_there!r}] do not meet"
+
+
+def compare_goals(outcome, goals, summary, reference):
+    """The intervals must hold what the reference has."""
+    for name, goal in goals.items():
+        interval = summary["goals"][name]["interval"]
+        if "goals" in reference:
+            there = reference["goals"][name]["value"]
+        elif "Component" in goal:
+            there = reference["side_displacement"][goal["Side"]]["mean"]["XYZ".index(goal["Component"])]
+        else:
+            continue
+        if interval is None or there is None:
+            outcome.untold += 1
+            continue
+        low, high = interval
+        outcome.goals.append((high - low) / abs(there) if there else math.inf)
+        if not low - ROUNDING * abs(there) <= there <= high + ROUNDING * abs(there):
+            outcome.complaint = f"the interval of {name} {goal}, [{low!r}, {high!r}], does not hold {there!r}"
 
 
 def compare_forces(outcome, summary, reference):
@@ -382,6 +421,9 @@ def main():
     widths = sorted(o.force for o in known if o.force is not None)
     if widths:
         print(f"  {len(widths)} intervals of contact forces hold that of the finer mesh; width over force {widths[0]:.3f} to {widths[-1]:.3f}, median {statistics.median(widths):.3f}")
+    widths = sorted(width for o in outcomes for width in o.goals)
+    if widths:
+        print(f"  {len(widths)} intervals of goals hold that of the finer mesh, {sum(o.untold for o in outcomes)} have none; width over the number {widths[0]:.3f} to {widths[-1]:.3f}, median {statistics.median(widths):.3f}")
     too_large = known and statistics.median(o.effectivity for o in known) > large
     return 1 if any(o.complaint for o in outcomes) or below or too_large else 0
 

@@ -17,6 +17,45 @@ using namespace rpc;
 
 const std::string decks = std::string(RPC_TEST_DECKS) + "/", input = decks + "../../../input/";
 
+void expect_same(const std::vector<bound::GoalBound> &a, const std::vector<bound::GoalBound> &b)
+{
+  ASSERT_EQ(a.size(), 2u);
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    EXPECT_EQ(a[k].missing, "");
+    EXPECT_EQ(b[k].missing, "");
+    const double size = std::abs(b[k].lower) + std::abs(b[k].upper);
+    EXPECT_NEAR(a[k].value, b[k].value, 1e-9 * size);
+    EXPECT_NEAR(a[k].lower, b[k].lower, 1e-3 * size); // w is solved to 1e-4
+    EXPECT_NEAR(a[k].upper, b[k].upper, 1e-3 * size);
+  }
+}
+
+TEST(ErrorBoundOnRanks, OfGoalsIsThatOfOneRank)
+{
+  const RCP<const Comm> world = Tpetra::getDefaultComm(), alone = world->split(world->getRank(), 0);
+  struct {
+    std::string deck;
+    std::vector<std::string> numbers;
+  } const scenes[] = {{input + "beam.xml",
+                       {"Mesh->Cells={20, 4}", "Mesh->Element=P2", "Goals->top->Component=Y",
+                        "Goals->bottom->Type=mean pressure", "Goals->bottom->Box={1.1, 0, 3, 0}"}},
+                      {decks + "clamped_block.xml",
+                       {"Mesh->Element=P1", "Goals->front->Component=Z", "Goals->back->Type=contact force",
+                        "Goals->back->Box={0.3, 0.2, -1, 1.5, 0.8, 1}"}},
+                      {decks + "clamped_block.xml",
+                       {"Mesh->Element=Q1", "Goals->back->Component=X", "Goals->part->Type=mean pressure",
+                        "Goals->part->Side=back", "Goals->part->Box={0.3, 0.2, -1, 1.5, 0.8, 1}"}}};
+  for (const auto &scene : scenes) {
+    SCOPED_TRACE(scene.numbers[1] + " of " + scene.deck);
+    auto numbers = scene.numbers;
+    numbers.insert(numbers.end(), {"Contact->Yield Stress=6", "Adapt->Error Bound=guaranteed", "Uzawa->Tolerance=1e-12",
+                                   "NOX->Residual Tolerance=1e-13"});
+    const Solution several = run_scene(scene.deck, numbers, world), own = run_scene(scene.deck, numbers, alone);
+    ASSERT_TRUE(several.bound && own.bound);
+    expect_same(several.bound->goals, own.bound->goals);
+  }
+}
+
 TEST(ErrorBoundOnRanks, IsThatOfOneRank)
 {
   const RCP<const Comm> world = Tpetra::getDefaultComm(), alone = world->split(world->getRank(), 0);

@@ -52,13 +52,13 @@ Solution with_estimate(const Task &task, const Listener &listener, const Run &ru
   bound::FacetsOfMesh facets;
   if (guaranteed)
     all.step.start = [&](const analysis::Problem &problem, const analysis::Step &step) {
-      facets = bound::require_covered(problem, step);
+      facets = bound::require_covered(problem, step, task.goals);
       require_coverable_meshes(task, problem.discretization().mesh->element);
       if (listener.step.start) listener.step.start(problem, step);
     };
   all.solved = [&](const analysis::Problem &problem, analysis::Solution &found) {
     if (guaranteed && found.has_results())
-      s.bound = bound::energy_bound(problem, found, task.linear_solver, bound::bound_rules.steps, facets);
+      s.bound = bound::energy_bound(problem, found, task.linear_solver, bound::bound_rules.steps, facets, task.goals);
     facets.reset(); // memory
     const contact::ContactNodes &points = found.step.contact;
     const Comm &comm = found.discretization.mesh->comm();

@@ -121,8 +121,11 @@ void require_adaptable(const Task &task)
                   "deck: \"Adapt\" does not go with several foundations of one side, \""
                       << contact[b].path << "\" and \"" << contact[a].path
                       << "\": their errors are not estimated yet. Leave \"Adapt\" out.");
+  RPC_REQUIRE(bounded || task.goals.empty(), "deck: \"" << task.goals.front().path()
+                                                        << "\" asks for a guaranteed interval. Write "
+                                                           "\"Adapt->Error Bound\" = guaranteed");
   if (!bounded) return;
-  bound::require_covered(task);
+  bound::require_covered(task, task.goals);
   RPC_REQUIRE(!task.adapt.adapts() || nests(task.mesh, task.adapt) || !box ||
                   box->element.shape == mesh::Shape::simplex,
               "deck: \"Adapt->Error Bound\" = guaranteed covers parallelograms, and the quadrilaterals that gmsh makes "

@@ -3,12 +3,14 @@
 
 #include "bound_parts.hpp"
 #include "boundary.hpp"
-#include "contact_force.hpp"
 #include "contact_terms.hpp"
 #include "descent.hpp"
+#include "functionals.hpp"
 #include "revolution_cells.hpp"
 #include "rpc/core/parallel.hpp"
+#include "rpc/core/parameters.hpp"
 #include "rpc/core/timed.hpp"
+#include "rpc/fem/measure.hpp"
 #include "space_bound.hpp"
 #include "star_solves.hpp"
 
@@ -78,7 +80,7 @@ double product_over_ranks(const CellInput &in, const Comm &comm, const Tractions
 
 } // namespace
 
-void require_covered(const analysis::Task &task)
+void require_covered(const analysis::Task &task, const std::vector<Goal> &goals)
 {
   for (const auto &condition : task.model.dirichlet)
     require_of_deck(!condition.is_moved() && !condition.rigid,
@@ -93,12 +95,29 @@ void require_covered(const analysis::Task &task)
     for (std::size_t other = 0; other < k; ++other)
       require_of_deck(task.model.contact[other].side != task.model.contact[k].side,
                       "side \"" + task.model.contact[k].side + "\" has several foundations");
+  for (const Goal &goal : goals) {
+    const bool of_displacement = goal.type == Goal::Type::mean_displacement;
+    std::vector<std::string> sides;
+    for (const auto &side : task.model.contact) sides.push_back(side.side);
+    RPC_REQUIRE(of_displacement || std::find(sides.begin(), sides.end(), goal.side) != sides.end(),
+                "deck: \"" << goal.path() << "\" is a " << name_of(goal.type) << ", and side \"" << goal.side
+                           << "\" has no contact. "
+                           << (sides.empty() ? "There is no contact side" : "Contact sides are " + join(sides)));
+    RPC_REQUIRE(!of_displacement || task.model.kinematics != fem::Kinematics::axisymmetric,
+                "deck: \"" << goal.path()
+                           << "\" is a mean displacement of a body of revolution, of which pressures and contact "
+                              "forces alone have intervals. Leave it out");
+  }
   require_same_everywhere(task.model.seen_at(task.has_steps() ? task.steps.times.front() : task.time));
 }
 
-FacetsOfMesh require_covered(const analysis::Problem &problem, const analysis::Step &step)
+FacetsOfMesh require_covered(const analysis::Problem &problem, const analysis::Step &step,
+                             const std::vector<Goal> &goals)
 {
   const fem::Discretization &d = problem.discretization();
+  for (const Goal &goal : goals)
+    RPC_REQUIRE(fem::side_measure(d, d.mesh->side(goal.side, goal.path())).area > 0,
+                "deck: \"" << goal.path() << "\": side \"" << goal.side << "\" has no facets");
   const analysis::Model model = problem.model().seen_at(step.time);
   require_same_everywhere(model);
   require_of_deck(!step.support.by_contact_only, "contact alone holds the body");
@@ -126,22 +145,20 @@ FacetsOfMesh require_covered(const analysis::Problem &problem, const analysis::S
   return {};
 }
 
-namespace
-{
-
-EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolution &s,
-                     const solver::LinearSolverOptions &options, const int steps)
+Bounded<ContactFacets> bounded_in_plane(const analysis::Problem &problem, const analysis::StepSolution &s,
+                                        const solver::LinearSolverOptions &options, const int steps)
 {
   const fem::Discretization &d = problem.discretization();
   const analysis::Model model = problem.model().seen_at(s.step.time);
   const CellInput in = cell_input(problem, model);
   const Boundary boundary = boundary_of(problem, s.step, in.facets, tractions_of(s.contact));
 
-  EnergyBound bound;
-  const auto squared = [&](const Vector &x) {
-    if (in.of_revolution()) return squared_of_revolution(in, d.mesh->comm(), *fem::on_overlap(d, x));
-    return Squared(fem::internal_work(d, model.materials, x).energy_norm_squared);
-  };
+  Bounded<ContactFacets> bounded;
+  bounded.sides = boundary.sides;
+  EnergyBound &bound = bounded.bound;
+  auto squared = squared_by_elements(problem);
+  if (in.of_revolution())
+    squared = [&d, in](const Vector &x) { return squared_of_revolution(in, d.mesh->comm(), *fem::on_overlap(d, x)); };
   const HostView<double *> moved = moved_out(problem, model, s, boundary.sides, bound);
   const RCP<const Vector> u = vector_of(moved, d.owned_dofs);
   const ContactTerms contact = contact_terms(boundary.sides, *d.mesh, moved);
@@ -156,8 +173,10 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   bound.upper = strain.upper / 2 - work + contact.energy;
 
   const BoundaryTractions all = with_contact(boundary.tractions, boundary.sides, contact.tractions);
+  bounded.u = u;
+  bounded.works = works_of(problem, in, boundary.tractions, all, squared);
   const Solved galerkin = timed_galerkin_solution(problem, s, options, in, all, bound);
-  if (!bound.missing.empty()) return bound;
+  if (!bound.missing.empty()) return bounded;
 
   const FacetExchange exchange(d, in.facets);
   const Comm &comm = d.mesh->comm();
@@ -176,17 +195,10 @@ EnergyBound bound_of(const analysis::Problem &problem, const analysis::StepSolut
   std::vector<double> falls;
   for (int step = 0; step < steps; ++step) falls.push_back(descent.step());
   const StressDifference left = stress_difference(in, comm, t, *on_overlap, of_cell);
-  const double rho = take_descent(comm, in, boundary.sides, contact, left, falls, lift, of_cell, bound);
-  if (!bound.missing.empty()) return bound;
+  bounded.rho = take_descent(comm, in, boundary.sides, contact, left, falls, lift, of_cell, bound);
   bound.lower -= (strain.upper - strain.lower) / 2;
-  const auto work_with = [&](const BoundaryTractions &tractions, const Vector &w) {
-    return work_of(d, known_moments(in, tractions), in, w);
-  };
-  add_forces(problem, s, options, boundary.sides, rho, *u, boundary.tractions, all, work_with, squared, bound);
-  return bound;
+  return bounded;
 }
-
-} // namespace
 
 const char *name_of(const EnergyBound::Of of)
 {
@@ -201,16 +213,20 @@ const char *name_of(const EnergyBound::Of of)
 }
 
 EnergyBound energy_bound(const analysis::Problem &problem, const analysis::StepSolution &solution,
-                         const solver::LinearSolverOptions &options, const int steps, const FacetsOfMesh &facets)
+                         const solver::LinearSolverOptions &options, const int steps, const FacetsOfMesh &facets,
+                         const std::vector<Goal> &goals)
 {
   EnergyBound bound;
   double seconds = 0;
   {
     const Timed phase("bound", seconds);
-    bound = problem.discretization().dim() == 3
-                ? bound_in_space(problem, solution, options, 2 * steps,
-                                 facets ? *facets : *require_covered(problem, solution.step))
-                : bound_of(problem, solution, options, steps);
+    const bool in_space = problem.discretization().dim() == 3;
+    const FacetsOfMesh found = in_space && !facets ? require_covered(problem, solution.step, goals) : facets;
+    const SolvedStep in{problem, solution, options, steps, found.get()};
+    bound = in_space
+                ? with_functionals(
+                      in, bounded_in_space(problem, solution, options, steps, *found, contact_sides(problem)), goals)
+                : with_functionals(in, bounded_in_plane(problem, solution, options, steps), goals);
   }
   bound.seconds = seconds;
   return bound;

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "boundary.hpp"
+#include "bounded.hpp"
 #include "cells.hpp"
 #include "constant_field.hpp"
-#include "contact_force.hpp"
 #include "galerkin.hpp"
 #include "local_terms.hpp"
 #include "rpc/bound/bound.hpp"
@@ -109,43 +109,24 @@ double take_descent(const Comm &comm, const Input &in, const std::vector<Side> &
   return std::sqrt(stress_norm * stress_norm / 4 + contact.gap);
 }
 
-/// Bounds of a(u, w), by norms of sums of alike size. @param squared  gives Squared of a displacement (owned dofs)
-template <class OfU>
-Squared energy_product(const OfU &squared, const Vector &u, const Vector &w)
+/// @param loads, all  tractions on the boundary without and with those of contact   @param squared  bounds of |w|^2
+template <class Input>
+Works works_of(const analysis::Problem &problem, const Input &in, const BoundaryTractions &loads,
+               const BoundaryTractions &all, const std::function<Squared(const Vector &)> &squared)
 {
-  const double of_u = Squared(squared(u)).upper, of_w = Squared(squared(w)).upper;
-  if (of_u == 0 || of_w == 0) return {};
-  const double scale = std::sqrt(of_u / of_w);
-  Vector sum(u, Teuchos::Copy), difference(u, Teuchos::Copy);
-  sum.update(scale, w, 1);
-  difference.update(-scale, w, 1);
-  const Squared more = squared(sum), less = squared(difference);
-  return {(more.lower - less.upper) / (4 * scale), (more.upper - less.lower) / (4 * scale)};
+  const fem::Discretization &d = problem.discretization();
+  const auto work_with = [&d, in](const BoundaryTractions &tractions) {
+    return [&d, in, tractions](const Vector &w) { return work_of(d, known_moments(in, tractions), in, w); };
+  };
+  return {work_with(loads), work_with(all), squared};
 }
 
-/// The intervals of contact forces. Collective.                                                  doc/bounds.md (13.14), (13.15)
-/// @param rho  of (13.13) [J^(1/2)]   @param u  (owned dofs) u^
-/// @param loads, all  without and with contact's tractions
-/// @param work  of tractions and the body force with a displacement (owned dofs) [J]   @param squared  bounds of its |w|^2
-template <class Side, class Work, class OfU>
-void add_forces(const analysis::Problem &problem, const analysis::StepSolution &s,
-                const solver::LinearSolverOptions &options, const std::vector<Side> &sides, const double rho,
-                const Vector &u, const BoundaryTractions &loads, const BoundaryTractions &all, const Work &work,
-                const OfU &squared, EnergyBound &bound)
+/// |w|^2 by the elements' integrals, which are exact.
+inline std::function<Squared(const Vector &)> squared_by_elements(const analysis::Problem &problem)
 {
-  for (std::size_t k = 0; k < sides.size(); ++k) {
-    const UnitPress press = unit_press(problem, s.step.time, sides, static_cast<int>(k), options);
-    ForceBound force;
-    force.missing = press.missing;
-    if (press.missing.empty()) {
-      const Squared product = energy_product(squared, u, *press.w);
-      const double of_work = work(loads, *press.w) - work(all, *press.w) / 2,
-                   room = rho * std::sqrt(Squared(squared(*press.w)).upper);
-      force.lower = std::max(0., of_work - product.upper / 2 - room + press.low);
-      force.upper = std::min(largest_force(sides[k]), of_work - product.lower / 2 + room + press.high);
-    }
-    bound.contact_force.push_back(force);
-  }
+  return [&problem](const Vector &w) {
+    return fem::internal_work(problem.discretization(), problem.model().materials, w).energy_norm_squared;
+  };
 }
 
 } // namespace rpc::bound

@@ -29,6 +29,23 @@ void take_areas_of_halves(SpaceContact &c)
   }
 }
 
+Works works_of_hexahedra(const fem::Discretization &of_run, const HexahedraInput &in, const BoundaryTractions &loads,
+                         const BoundaryTractions &all)
+{
+  const auto work_with = [&of_run, in](const BoundaryTractions &tractions) {
+    return [&of_run, in, tractions](const Vector &w) {
+      const Comm &comm = of_run.mesh->comm();
+      const RCP<const Vector> x = fem::on_overlap(of_run, w);
+      return work_of_loads(in, comm, tractions, *x) +
+             work_of_hexahedra(in, comm, field_of_hexahedra(in, *x)).of_body_force;
+    };
+  };
+  return {work_with(loads), work_with(all), [&of_run, in](const Vector &w) {
+            const RCP<const Vector> x = fem::on_overlap(of_run, w);
+            return 2 * work_of_hexahedra(in, of_run.mesh->comm(), field_of_hexahedra(in, *x)).energy;
+          }};
+}
+
 } // namespace
 
 std::string not_covered_of_hexahedra(const analysis::Problem &problem, const analysis::Step &step, FacetsOfMesh &facets)
@@ -47,8 +64,9 @@ std::string not_covered_of_hexahedra(const analysis::Problem &problem, const ana
   return "";
 }
 
-EnergyBound bound_of_hexahedra(const analysis::Problem &problem, const analysis::StepSolution &s,
-                               const solver::LinearSolverOptions &options, const int steps, const SpaceFacets &facets)
+Bounded<SpaceContact> bounded_hexahedra(const analysis::Problem &problem, const analysis::StepSolution &s,
+                                        const solver::LinearSolverOptions &options, const int steps,
+                                        const SpaceFacets &facets, const std::vector<std::string> &flat)
 {
   const fem::Discretization &of_run = problem.discretization();
   const Comm &comm = of_run.mesh->comm();
@@ -58,13 +76,13 @@ EnergyBound bound_of_hexahedra(const analysis::Problem &problem, const analysis:
   SpaceInput tetrahedra = space_input(d, model, facets);
   tetrahedra.reference = reference_stress(d.mesh->element);
   find_kinds(tetrahedra, comm);
-  std::vector<std::string> flat;
-  for (const auto &side : model.contact) flat.push_back(side.side);
   HexahedraInput in = hexahedra_input(of_run, d, split, tetrahedra, flat);
   SpaceBoundary boundary = boundary_of(d, model, s.step, in, tractions_of(s.contact));
   for (SpaceContact &side : boundary.sides) take_areas_of_halves(side);
 
-  EnergyBound bound;
+  Bounded<SpaceContact> bounded;
+  bounded.sides = boundary.sides;
+  EnergyBound &bound = bounded.bound;
   const HostView<double *> moved = moved_out(problem, model, s, boundary.sides, bound);
   const RCP<const Vector> u = vector_of(moved, of_run.owned_dofs);
   const RCP<const Vector> on_overlap = fem::on_overlap(of_run, *u);
@@ -84,8 +102,10 @@ EnergyBound bound_of_hexahedra(const analysis::Problem &problem, const analysis:
 
   const BoundaryTractions all = with_contact(in, boundary, contact.tractions);
   in.shift = shift_of_loads(in, all);
+  bounded.u = u;
+  bounded.works = works_of_hexahedra(of_run, in, boundary.tractions, all);
   Solved galerkin = timed_galerkin_solution(problem, s, options, in, all, bound);
-  if (!bound.missing.empty()) return bound;
+  if (!bound.missing.empty()) return bounded;
 
   const SpaceForms forms = cell_forms(in, *on_overlap);
   add_bends_of_faces(in, *on_overlap, forms);
@@ -93,7 +113,7 @@ EnergyBound bound_of_hexahedra(const analysis::Problem &problem, const analysis:
                                     mean_moments(in, *fem::on_overlap(of_run, *galerkin.u)), steps);
   const DeviceView<double *> of_part("rpc::bound::of_part", in.num_owned_cells);
   const StressDifference left = stress_difference(in, comm, forms, after.t, field, of_part);
-  const double rho = take_descent(comm, in, boundary.sides, contact, left, after.falls, lift, of_part, bound);
+  bounded.rho = take_descent(comm, in, boundary.sides, contact, left, after.falls, lift, of_part, bound);
   const DeviceView<double *> of_cell("rpc::bound::of_cell", of_run.mesh->num_owned_cells);
   const auto parts = bound.squared;
   Kokkos::parallel_for(
@@ -102,18 +122,7 @@ EnergyBound bound_of_hexahedra(const analysis::Problem &problem, const analysis:
       });
   Kokkos::fence();
   bound.squared = of_cell;
-  if (!bound.missing.empty()) return bound;
-  const auto work_with = [&](const BoundaryTractions &tractions, const Vector &w) {
-    const RCP<const Vector> x = fem::on_overlap(of_run, w);
-    const FieldOfHexahedra of_w = field_of_hexahedra(in, *x);
-    return work_of_loads(in, comm, tractions, *x) + work_of_hexahedra(in, comm, of_w).of_body_force;
-  };
-  const auto squared = [&](const Vector &w) {
-    const RCP<const Vector> x = fem::on_overlap(of_run, w);
-    return 2 * work_of_hexahedra(in, comm, field_of_hexahedra(in, *x)).energy;
-  };
-  add_forces(problem, s, options, boundary.sides, rho, *u, boundary.tractions, all, work_with, squared, bound);
-  return bound;
+  return bounded;
 }
 
 } // namespace rpc::bound

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "rpc/bound/bound.hpp"
+#include "bounded.hpp"
 #include "space_stress.hpp"
 
 /// What space_bound.hpp has, for hexahedra of order 1.
@@ -15,7 +15,8 @@ std::string not_covered_of_hexahedra(const analysis::Problem &problem, const ana
                                      FacetsOfMesh &facets);
 
 /// @param steps  of conjugate gradients
-EnergyBound bound_of_hexahedra(const analysis::Problem &problem, const analysis::StepSolution &s,
-                               const solver::LinearSolverOptions &options, int steps, const SpaceFacets &facets);
+Bounded<SpaceContact> bounded_hexahedra(const analysis::Problem &problem, const analysis::StepSolution &s,
+                                        const solver::LinearSolverOptions &options, int steps,
+                                        const SpaceFacets &facets, const std::vector<std::string> &flat);
 
 } // namespace rpc::bound

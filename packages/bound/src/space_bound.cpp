@@ -50,11 +50,13 @@ std::string not_covered_in_space(const analysis::Problem &problem, const analysi
   return "";
 }
 
-EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::StepSolution &s,
-                           const solver::LinearSolverOptions &options, const int steps, const SpaceFacets &facets)
+Bounded<SpaceContact> bounded_in_space(const analysis::Problem &problem, const analysis::StepSolution &s,
+                                       const solver::LinearSolverOptions &options, const int steps,
+                                       const SpaceFacets &facets, const std::vector<std::string> &flat)
 {
   const fem::Discretization &d = problem.discretization();
-  if (d.mesh->element.shape != mesh::Shape::simplex) return bound_of_hexahedra(problem, s, options, 2 * steps, facets);
+  if (d.mesh->element.shape != mesh::Shape::simplex)
+    return bounded_hexahedra(problem, s, options, 4 * steps, facets, flat);
   const Comm &comm = d.mesh->comm();
   const analysis::Model model = problem.model().seen_at(s.step.time);
   SpaceInput in = space_input(d, model, facets);
@@ -62,7 +64,9 @@ EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::Ste
   find_kinds(in, d.mesh->comm());
   const SpaceBoundary boundary = boundary_of(d, model, s.step, in, tractions_of(s.contact));
 
-  EnergyBound bound;
+  Bounded<SpaceContact> bounded;
+  bounded.sides = boundary.sides;
+  EnergyBound &bound = bounded.bound;
   const HostView<double *> moved = moved_out(problem, model, s, boundary.sides, bound);
   const RCP<const Vector> u = vector_of(moved, d.owned_dofs);
   const SpaceContactTerms contact = contact_terms(boundary.sides, *d.mesh, moved);
@@ -74,24 +78,20 @@ EnergyBound bound_in_space(const analysis::Problem &problem, const analysis::Ste
   bound.upper = strain / 2 - work + contact.energy;
 
   const BoundaryTractions all = with_contact(in, boundary, contact.tractions);
+  bounded.u = u;
+  bounded.works = works_of(problem, in, boundary.tractions, all, squared_by_elements(problem));
   Solved galerkin = timed_galerkin_solution(problem, s, options, in, all, bound);
-  if (!bound.missing.empty()) return bound;
+  if (!bound.missing.empty()) return bounded;
 
   return_freed_memory();
   const RCP<const Vector> on_overlap = fem::on_overlap(d, *u);
   const SpaceForms forms = cell_forms(in, *on_overlap);
   const Descended after = descended(in, *d.mesh, d.node_to_cells, all, forms, galerkin.Q,
-                                    mean_moments(in, *fem::on_overlap(d, *galerkin.u)), steps);
+                                    mean_moments(in, *fem::on_overlap(d, *galerkin.u)), 2 * steps);
   const DeviceView<double *> of_cell("rpc::bound::of_cell", in.num_owned_cells);
   const StressDifference left = stress_difference(in, comm, forms, after.t, *on_overlap, of_cell);
-  const double rho = take_descent(comm, in, boundary.sides, contact, left, after.falls, lift, of_cell, bound);
-  if (!bound.missing.empty()) return bound;
-  const auto work_with = [&](const BoundaryTractions &tractions, const Vector &w) {
-    return work_of(d, known_moments(in, tractions), in, w);
-  };
-  const auto squared = [&](const Vector &x) { return fem::internal_work(d, model.materials, x).energy_norm_squared; };
-  add_forces(problem, s, options, boundary.sides, rho, *u, boundary.tractions, all, work_with, squared, bound);
-  return bound;
+  bounded.rho = take_descent(comm, in, boundary.sides, contact, left, after.falls, lift, of_cell, bound);
+  return bounded;
 }
 
 } // namespace rpc::bound

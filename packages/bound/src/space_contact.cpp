@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "space_contact.hpp"
 
-#include "facet_polynomials.hpp"
 #include "rpc/contact/law/foundation.hpp"
 #include "space_traction_fit.hpp"
 
@@ -14,28 +13,9 @@ namespace rpc::bound
 namespace
 {
 
-using Corner = std::array<double, 3>; // barycentric
-
-double value_at(const OfTriangle &of, const Corner &x)
+double value_at(const OfTriangle &of, const Barycentric &x)
 {
   return of[0] * x[0] + of[1] * x[1] + of[2] * x[2];
-}
-
-/// The part of a convex polygon in a triangle where sign * v >= 0.
-std::vector<Corner> part_of(const std::vector<Corner> &polygon, const OfTriangle &v, const double sign)
-{
-  std::vector<Corner> corners;
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Corner &here = polygon[k], &next = polygon[(k + 1) % polygon.size()];
-    const double a = sign * value_at(v, here), b = sign * value_at(v, next);
-    if (a >= 0) corners.push_back(here);
-    if ((a < 0) == (b < 0) || a == 0 || b == 0) continue;
-    const double s = a / (a - b);
-    Corner x{};
-    for (int i = 0; i < 3; ++i) x[i] = (1 - s) * here[i] + s * next[i];
-    corners.push_back(x);
-  }
-  return corners;
 }
 
 /// Parts of a triangle within which none of some linear functions changes its sign.
@@ -45,10 +25,10 @@ public:
   void end_at_roots_of(const OfTriangle &v)
   {
     if (*std::min_element(v.begin(), v.end()) >= 0 || *std::max_element(v.begin(), v.end()) <= 0) return;
-    std::vector<std::vector<Corner>> cut;
+    std::vector<std::vector<Barycentric>> cut;
     for (const auto &polygon : parts_)
       for (const double sign : {1., -1.}) {
-        cut.push_back(part_of(polygon, v, sign));
+        cut.push_back(part_of_polygon(polygon, v, sign));
         if (cut.back().size() < 3) cut.pop_back();
       }
     parts_ = cut;
@@ -59,11 +39,11 @@ public:
   {
     for (const auto &corners : parts_)
       for (std::size_t k = 2; k < corners.size(); ++k) {
-        const Corner *const t[3] = {&corners[0], &corners[k - 1], &corners[k]};
+        const Barycentric *const t[3] = {&corners[0], &corners[k - 1], &corners[k]};
         const auto side = [&](const int v, const int i) { return (*t[v])[i] - (*t[0])[i]; };
         const double size = std::abs(side(1, 1) * side(2, 2) - side(1, 2) * side(2, 1));
         for (int m = 0; m < 3; ++m) { // the middles of the sides
-          Corner x{};
+          Barycentric x{};
           for (int i = 0; i < 3; ++i) x[i] = ((*t[m])[i] + (*t[(m + 1) % 3])[i]) / 2;
           f(x, size / 3);
         }
@@ -71,7 +51,7 @@ public:
   }
 
 private:
-  std::vector<std::vector<Corner>> parts_{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  std::vector<std::vector<Barycentric>> parts_{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 };
 
 OfTriangle plus(OfTriangle x, const double a, const OfTriangle &y)
@@ -98,7 +78,7 @@ std::array<int, 3> powers(const int order, const int i)
 }
 
 /// The part of a triangle between three places.
-using Part = std::array<Corner, 3>;
+using Part = std::array<Barycentric, 3>;
 
 /// The coefficients on a part.
 OfTriangle on_part(const int order, const OfTriangle &b, const Part &part)
@@ -108,7 +88,7 @@ OfTriangle on_part(const int order, const OfTriangle &b, const Part &part)
     for (int v = 0; v < 3; ++v) of[v] = value_at(b, part[v]);
     return of;
   }
-  const auto blossom = [&](const Corner &x, const Corner &y) {
+  const auto blossom = [&](const Barycentric &x, const Barycentric &y) {
     double sum = x[0] * y[0] * b[0] + x[1] * y[1] * b[1] + x[2] * y[2] * b[2];
     for (int m = 0; m < 3; ++m) {
       const auto [i, j] = ends_of(m);
@@ -121,7 +101,7 @@ OfTriangle on_part(const int order, const OfTriangle &b, const Part &part)
   return of;
 }
 
-Corner between(const Corner &x, const Corner &y)
+Barycentric between(const Barycentric &x, const Barycentric &y)
 {
   return {(x[0] + y[0]) / 2, (x[1] + y[1]) / 2, (x[2] + y[2]) / 2};
 }
@@ -163,7 +143,7 @@ private:
       return;
     }
     if (depth < deepest) {
-      const Corner middle[3] = {between(part[0], part[1]), between(part[1], part[2]), between(part[0], part[2])};
+      const Barycentric middle[3] = {between(part[0], part[1]), between(part[1], part[2]), between(part[0], part[2])};
       for (const Part &quarter : {Part{part[0], middle[0], middle[2]}, Part{middle[0], part[1], middle[1]},
                                   Part{middle[2], middle[1], part[2]}, Part{middle[0], middle[1], middle[2]}})
         add(quarter, size / 4, depth + 1);
@@ -188,6 +168,23 @@ private:
 };
 
 } // namespace
+
+std::vector<Barycentric> part_of_polygon(const std::vector<Barycentric> &polygon, const OfTriangle &v,
+                                         const double sign)
+{
+  std::vector<Barycentric> corners;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Barycentric &here = polygon[k], &next = polygon[(k + 1) % polygon.size()];
+    const double a = sign * value_at(v, here), b = sign * value_at(v, next);
+    if (a >= 0) corners.push_back(here);
+    if ((a < 0) == (b < 0) || a == 0 || b == 0) continue;
+    const double s = a / (a - b);
+    Barycentric x{};
+    for (int i = 0; i < 3; ++i) x[i] = (1 - s) * here[i] + s * next[i];
+    corners.push_back(x);
+  }
+  return corners;
+}
 
 OfTriangle bernstein_of(const int order, const OfTriangle &at_nodes)
 {
@@ -295,7 +292,7 @@ ContactIntegrals contact_integrals(const int order, const OfTriangle &v, const O
     parts.end_at_roots_of(plus(p, -1, law.limit));
   }
   ContactIntegrals sum;
-  parts.integrate([&](const Corner &x, const double w) {
+  parts.integrate([&](const Barycentric &x, const double w) {
     const contact::Foundation f{rigid ? law.limit[0] : value_at(law.limit, x), law.rise, law.spring};
     const double deep = value_at(v, x), pressure = std::max(0., value_at(p, x));
     sum.add(w, deep, pressure, f, rigid && law.spring == 0);

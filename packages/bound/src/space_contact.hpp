@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "facet_polynomials.hpp"
 #include "rpc/core/kokkos.hpp"
 #include "rpc/core/point.hpp"
 #include "side_terms.hpp"
@@ -77,6 +78,9 @@ std::vector<OfTriangle> fitted_pressure(const SpaceContact &c, const std::vector
 /// @param slip  (axes; facets) [m]
 using AlongSide = std::array<std::vector<OfTriangle>, 2>;
 AlongSide fitted_friction(const SpaceContact &c, const AlongSide &slip);
+
+/// The part of a convex polygon in a triangle where sign * v >= 0, v linear.
+std::vector<Barycentric> part_of_polygon(const std::vector<Barycentric> &polygon, const OfTriangle &v, double sign);
 
 /// The law of a facet: its yield limit, H and c.
 struct TriangleLaw {

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "rpc/analysis/run.hpp"
+#include "rpc/bound/goals.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace rpc::adapt
 {
@@ -54,6 +56,7 @@ std::optional<mesh::MeshOptions> sized(const mesh::MeshOptions &first, const Ada
 /// What is to be solved, on meshes that are adapted where that is asked for.
 struct Task : analysis::Task {
   AdaptOptions adapt;
+  std::vector<bound::Goal> goals; ///< to be told with the guaranteed bound
 };
 
 /// @throws rpc::Error (bad_input) unless the task's mesh can be adapted, and its error be bounded, where that is asked for

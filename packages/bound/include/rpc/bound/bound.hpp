@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rpc/analysis/run.hpp"
+#include "rpc/bound/goals.hpp"
 
 #include <memory>
 #include <string>
@@ -26,6 +27,7 @@ struct EnergyBound {
   double moved = 0;            ///< |u^ - u_h|, by how much u_h was moved out of the foundation [J^(1/2)]
   std::vector<double> steps;   ///< J(u^) - D(sigma) after 0, 1, ... steps of conjugate gradients on tractions [J]
   std::vector<ForceBound> contact_force; ///< by contact side
+  std::vector<GoalBound> goals;          ///< as they were given
   DeviceView<double *> squared;          ///< (owned cells) the parts of energy_norm^2 [J], in 2D per m
   double imbalance = 0;      ///< largest force that is out of balance on a cell, over the largest on a side of one
   int linear_iterations = 0; ///< of the elastic solve
@@ -39,17 +41,19 @@ const char *name_of(EnergyBound::Of of);
 
 /// Whether the bound is known for a task; needs no mesh.
 /// @throws rpc::Error (bad_input) naming what is covered, if not
-void require_covered(const analysis::Task &task);
+void require_covered(const analysis::Task &task, const std::vector<Goal> &goals);
 /// The facets of the mesh that bounds in space go by; in the plane null.
 struct SpaceFacets;
 using FacetsOfMesh = std::shared_ptr<const SpaceFacets>;
 /// The same of a step on its mesh; collective. @return for energy_bound()
 /// @throws rpc::Error (bad_input)
-FacetsOfMesh require_covered(const analysis::Problem &problem, const analysis::Step &step);
+FacetsOfMesh require_covered(const analysis::Problem &problem, const analysis::Step &step,
+                             const std::vector<Goal> &goals);
 
 /// Collective. @param solution  of a step that require_covered() admits   @param facets  that it has found; null: they are to be found
 /// @param steps  of conjugate gradients, see bound_rules; in space twice as many, of hexahedra four times
 EnergyBound energy_bound(const analysis::Problem &problem, const analysis::StepSolution &solution,
-                         const solver::LinearSolverOptions &options, int steps, const FacetsOfMesh &facets);
+                         const solver::LinearSolverOptions &options, int steps, const FacetsOfMesh &facets,
+                         const std::vector<Goal> &goals = {});
 
 } // namespace rpc::bound
