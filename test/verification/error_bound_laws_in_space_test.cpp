@@ -60,7 +60,8 @@ TEST(ErrorBoundOfLawsInSpace, HoldsTheEnergyOfTheSameBodyInThePlane)
       EXPECT_GT(s.contact.total.force[1], 0);
       EXPECT_LE(s.bound->lower, high);
       EXPECT_GE(s.bound->upper, low);
-      const double width = s.bound->upper - s.bound->lower, most = quadratic ? 1.85 : 2.8; // one cell across is not much
+      const double width = s.bound->upper - s.bound->lower,
+                   most = quadratic ? 1.85 : 2.8; // one cell across is not much
       EXPECT_LT(width, most * most * (s.bound->upper - low));
       EXPECT_LT(high - low, (quadratic ? 0.4 : 0.1) * width); // narrow
     }
