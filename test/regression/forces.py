@@ -43,6 +43,15 @@ SOFT = """tool:
   Output: {Exodus: false}
 """
 YIELDS, SPRINGS, RUBS = "Yield Stress: 40.0", "Stiffness: 3000.0\n    Yield Stress: 60.0", "Friction Coefficient: 0.3"
+TWO_MOTIONS = """tool:
+  Mesh: {Lower: [-1.0, 0.0], Upper: [1.0, 1.0], Cells: [32, 16], Element: Q2}
+  Material: {Young's Modulus: 200.0, Poisson's Ratio: 0.3}
+  Dirichlet: {top: {Y: 0.0, Force X: 1.0362e-6}}
+  Contact:
+    Side: bottom
+    Obstacle: {Type: sphere, Radius: 5.0, Centre: [0.076, -5.0], Force Y: 3.4e-3}
+  Output: {Exodus: false}
+"""
 STEPS = "Steps: {Times: [0.5, 1.0, 1.5, 2.0]}"
 FORCE = '"t < 1 ? -30*t : t < 1.5 ? -30 + 20*(t - 1) : -20 - 50*(t - 1.5)"'
 
@@ -71,6 +80,11 @@ class Forces(WrittenDeckTestCase):
                 given = self.solve("moved", SOFT.replace("[0.0, -1.0], TOP", f'[0.0, "-1.0 + {moved!r}*t"]'))
                 self.assertAlmostEqual(given["contact_force"][1], force, delta=1e-7 * force)
                 self.assertLessEqual(sum(found["newton_iterations"]), sum(given["newton_iterations"]) + 2)
+
+    def test_a_tool_moves_along_one_direction_and_its_body_along_another_that_contact_alone_holds(self):
+        found = self.solve("pressed", TWO_MOTIONS)  # predicted with one point closed, which holds one of the two
+        for force, given in zip(found["contact_force"], (-1.0362e-6, 3.4e-3)):
+            self.assertAlmostEqual(force, given, delta=1e-7 * 3.4e-3)
 
     def test_a_history_of_forces_follows_its_dents_and_its_work_is_that_of_the_path(self):
         self.solve("pressed", written(BOX, f"Force Y: {FORCE}", YIELDS, STEPS))

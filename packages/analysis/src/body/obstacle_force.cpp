@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "body/obstacle_force.hpp"
 
+#include "rpc/contact/support.hpp"
 #include "rpc/core/dofs.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/parallel.hpp"
@@ -186,10 +187,18 @@ bool obstacle_rests(const Problem &problem, const StepSolution &s, const double 
   return !(length(left_to_go(problem, s)) > tolerance * s.u->normInf() + rounding);
 }
 
-bool closes_under_force(const Model &model)
+bool closes_under_force(const Problem &problem, const Step &step)
 {
-  const contact::ContactOptions *const pressed = pressed_by_force(model);
-  return pressed != nullptr && !pressed->yield_stress.at && std::isinf(pressed->yield_stress.constant);
+  const contact::ContactOptions *const pressed = pressed_by_force(problem.model());
+  if (pressed == nullptr || pressed->yield_stress.at || !std::isinf(pressed->yield_stress.constant)) return false;
+  bool is_free = false; // along a direction without a spring
+  for (int c = 0; c < 3; ++c)
+    is_free = is_free || (pressed->obstacle.is_moved_along(c) && !(pressed->obstacle.stiffness[c] > 0));
+  if (!is_free) return false;
+  std::size_t motions = 0;
+  for (const auto &of_part : contact::free_parts(problem.discretization(), step.elastic.dirichlet).motions)
+    motions += of_part.size();
+  return motions == 1;
 }
 
 void settle_obstacle(const Problem &problem, const ConvexFunctional &functional, Vector &u)

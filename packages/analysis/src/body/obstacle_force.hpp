@@ -52,8 +52,9 @@ private:
 /// Whether that is no more than a tolerance, in units of the largest displacement: the contact points were seen from where the obstacle is. Collective.
 bool obstacle_rests(const Problem &problem, const StepSolution &s, double tolerance);
 
-/// Whether a force moves an obstacle that never yields: some point is closed wherever it is borne, and holds it.        (9.8)
-bool closes_under_force(const Model &model);
+/// Whether a force moves an obstacle whose foundation never yields, and contact alone stops nothing but this one motion: any point that bears
+/// the force is closed then, and holds it. Collective.                                                             (9.8)
+bool closes_under_force(const Problem &problem, const Step &step);
 
 /// Moves the obstacle that a force moves, seen as u is, to where the pressures that the functional has there bear the force. Collective.  (3.17f)
 void settle_obstacle(const Problem &problem, const ConvexFunctional &functional, Vector &u);

@@ -71,8 +71,8 @@ StepSolution solve_with(const Problem &problem, const Step &step, SolverState &s
     s.levels = std::move(prediction.work);
     s.start = prediction.nearest;
     if (prediction.start) predicted = std::move(prediction.by);
-    if (iterate.duals().given() && closes_under_force(problem.model())) // springs are not needed to hold the body
-      iterate.step_taken(std::numeric_limits<double>::infinity());      // (9.8)
+    if (iterate.duals().given() && closes_under_force(problem, step)) // springs are not needed to hold the body
+      iterate.step_taken(std::numeric_limits<double>::infinity());    // (9.8)
   }
   {
     const Timed timer("solve", s.solve_seconds);
