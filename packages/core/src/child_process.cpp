@@ -80,8 +80,10 @@ std::optional<std::string> in_child_process(const std::function<std::string()> &
   while (child > 0 && ::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   RPC_REQUIRE_CODE(child > 0, ExitCode::internal_error, "no child process can be started: " << std::strerror(cause));
-  throw_if_asked("while a file was read; no results are written"); // Ctrl-C at a console ends the child, too
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || answer.empty()) return std::nullopt;
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || answer.empty()) {
+    throw_if_asked("while a file was read; no results are written"); // Ctrl-C at a console ends the child, too
+    return std::nullopt;
+  }
   const auto code = static_cast<ExitCode>(answer[0]);
   if (code != ExitCode::converged) throw Error(code, answer.substr(1));
   return answer.substr(1);

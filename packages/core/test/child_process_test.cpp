@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "expect_error.hpp"
 #include "rpc/core/child_process.hpp"
+#include "rpc/core/interrupt.hpp"
 
 #include <csignal>
 #include <cstdlib>
+#include <functional>
 #include <iostream>
 #include <new>
 #include <unistd.h>
@@ -39,6 +41,23 @@ TEST(ChildProcess, OneThatBreaksDownReturnsNothingAndLeavesThisProcessAlone)
     })) << signal;
   EXPECT_FALSE(in_child_process([]() -> std::string { ::_exit(0); })); // a library that ends the process
   EXPECT_FALSE(in_child_process([]() -> std::string { throw std::bad_alloc(); }));
+}
+
+/// A signal may reach one rank of those that read a file: this rank goes on to where all look for it together.
+TEST(ChildProcess, OneThatEndsWellIsNotGivenUpForASignalToThisProcess)
+{
+  const auto ends = [](const std::function<std::string()> &work) {
+    install_interrupt_handlers();
+    std::raise(SIGTERM);
+    try {
+      std::_Exit(in_child_process(work) == "done" ? 0 : 1);
+    } catch (const Error &error) {
+      std::_Exit(static_cast<int>(error.code()));
+    }
+  };
+  EXPECT_EXIT(ends([] { return std::string("done"); }), testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(ends([]() -> std::string { ::_exit(1); }),
+              testing::ExitedWithCode(static_cast<int>(ExitCode::not_converged)), "");
 }
 
 TEST(ChildProcess, WritesNothingToTheConsole)
