@@ -31,7 +31,7 @@ struct GapReading {
   /// The samples of one of the two lattices.
   void sample(LO f, const std::vector<FacetShape> &lattice, SampledFacet &found) const;
   /// Whether samples are far from what the nodes show: the gap jumps, or has a kink. NaN and infinity, where the obstacle is missed, are not.
-  /// Nor does nodal quadrature see a node without weight that lies deeper in the foundation than its pressure explains.
+  /// So it is where a node without weight, which nodal quadrature does not see, lies deeper in the foundation than its pressure explains.
   /// @param modulus  of the cell: lambda + 2 mu [Pa]   @param at  samples of the coarse lattice
   bool is_off(LO f, double modulus, const SampledFacet &at) const;
   /// Of a facet that is_off().
