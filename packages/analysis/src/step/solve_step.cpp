@@ -46,7 +46,7 @@ Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector
 double residual_before(const std::vector<double> &worst, bool bounds_follow);
 contact::OptimalityResiduals judge(const Problem &problem, const Step &step, const Iterate &iterate,
                                    const contact::ContactState &now, SolverState &state, double tolerance);
-void tell_want_of_friction(UzawaResult &uzawa, const Problem &problem);
+void tell_want_of_friction(UzawaResult &uzawa, const Problem &problem, const Vector &u);
 void read_results(const Problem &problem, const StepOptions &options, SolverState &state, StepSolution &s);
 solver::LinearSolverCounts counts_since(const solver::LinearSolverCounts &before, solver::LinearSolverCounts now);
 
@@ -110,7 +110,7 @@ StepSolution solve_with(const Problem &problem, const Step &step, SolverState &s
                                                  uzawa.residuals.force_size);
           });
     }
-    if (!uzawa.converged && step.support.by_coulomb_only) tell_want_of_friction(uzawa, problem);
+    if (!uzawa.converged && step.support.by_coulomb_only) tell_want_of_friction(uzawa, problem, *s.state.displacement);
     s.u = s.state.displacement;
     s.state.rest = Teuchos::null; // of the judgement alone
     if (uzawa.converged && starts.may_rest) rest_where_led(problem, starts.led_before, options.uzawa.tolerance, s);
@@ -333,14 +333,14 @@ contact::OptimalityResiduals judge(const Problem &problem, const Step &step, con
 }
 
 /// The reason of a step without convergence where friction that follows the pressures must hold the body. What ended the last minimization is
-/// then no reason, nor is a residual of 1 or more of a body that has moved away. (12.10)
-void tell_want_of_friction(UzawaResult &uzawa, const Problem &problem)
+/// then no reason, nor is a residual, or the rounding, of a body that has moved away. (12.10)
+void tell_want_of_friction(UzawaResult &uzawa, const Problem &problem, const Vector &u)
 {
   if (interrupted(problem.discretization().mesh->comm())) return;
-  const bool moves = uzawa.friction_unsettled || !(uzawa.residuals.worst() < 1);
-  const std::string ended =
-      moves ? std::to_string(uzawa.iterations) + " Uzawa iterations were not enough" : uzawa.reason;
-  uzawa.reason = ended + "; " + because(causes::want_of_friction);
+  const bool moves = uzawa.friction_unsettled || !(uzawa.residuals.worst() < 1) ||
+                     u.normInf() > mesh::diameter(*problem.discretization().mesh);
+  if (moves) uzawa.reason = std::to_string(uzawa.iterations) + " Uzawa iterations were not enough";
+  uzawa.reason += "; " + because(causes::want_of_friction);
   if (moves) uzawa.reason_has_residuals = false;
 }
 
