@@ -338,7 +338,7 @@ ActiveSetChoice largest_changes(const SmoothedFunctional &functional, const Acti
 namespace
 {
 
-/// Takes the update's friction states; points that stick are moved to where their slip is 0.                         (12.5a)
+/// Takes the update's friction states; points that begin to stick are moved back to where their slip is 0.
 void take_slip(const ActiveSetChoice &choice, const SmoothedPoints &points, const ActiveSet &active, Vector &u)
 {
   const SmoothedPoints s = points;
@@ -355,6 +355,7 @@ void take_slip(const ActiveSetChoice &choice, const SmoothedPoints &points, cons
         const ContactNodes &c = s.points;
         const Friction f = c.friction(i);
         const SlipBranch branch{slips(i), row(direction, i)};
+        const bool sticks = branch.state == Slip::stick && to.slip(i) != Slip::stick;
         const double pressure = state(i) == State::open ? 0 : multiplier_of(state(i), p(i), c.law(i));
         to.slip(i) = branch.state;
         to.cannot_stick(i) = cannot_stick(i);
@@ -362,7 +363,7 @@ void take_slip(const ActiveSetChoice &choice, const SmoothedPoints &points, cons
         set_row(to.direction, i, branch.direction);
         set_row(s.multiplier.tangential, i, multiplier_of(branch, row(traction, i), pressure, f));
         s.bound(i) = friction_bound(pressure, f);
-        if (branch.state != Slip::stick) return;
+        if (!sticks) return;
         const Along e = slip(c, i, x);
         for (int k = 0; k < c.dim; ++k)
           if (c.friction.free(i, k)) x(c.dof(i, k)) -= e(k);
@@ -378,7 +379,6 @@ void take_choice(const ActiveSetChoice &choice, const SmoothedFunctional &functi
   const SmoothedPoints &s = functional.points();
   const auto state = active.state, next = choice.state;
   const auto p = choice.pressure;
-  const bool all = s.points.friction.anywhere; // those that stay closed too (12.5a)
   active.chosen = true;
   const auto x = device_write(u);
   for_each_point_by_group( // a node of two sides is moved for one after the other
@@ -386,7 +386,7 @@ void take_choice(const ActiveSetChoice &choice, const SmoothedFunctional &functi
         const ContactNodes &c = s.points;
         if (c.fixed(i)) return;
         const Foundation f = c.law(i);
-        const bool closes = next(i) == State::closed && (all || state(i) != State::closed);
+        const bool closes = next(i) == State::closed && state(i) != State::closed;
         const double lambda = multiplier_of(next(i), p(i), f);
         state(i) = next(i);
         s.multiplier.normal(i) = lambda;

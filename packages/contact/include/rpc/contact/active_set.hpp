@@ -41,8 +41,8 @@ ActiveSetChoice next_choice(const SmoothedFunctional &functional, const ActiveSe
 ActiveSetChoice largest_changes(const SmoothedFunctional &functional, const ActiveSet &present,
                                 const ActiveSetChoice &choice, double part);
 
-/// Takes the update's states, its pressures for multipliers as far as the states allow. Nodes that close, with friction all that are closed or
-/// stick, are moved onto the foundation: r v would make a large residual of a small distance.            (5.7), (12.5a)
+/// Takes the update's states for the active set, its pressures for multipliers as far as the states allow. Nodes that close are
+/// moved onto the foundation: r v would make a large residual of a small distance.                              (5.7)
 void take_choice(const ActiveSetChoice &choice, const SmoothedFunctional &functional, ActiveSet &active, Vector &u);
 
 /// About the largest error of the pressures at nodes that are not open, over the largest pressure: the share k/r that the
