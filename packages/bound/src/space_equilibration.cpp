@@ -255,7 +255,7 @@ Tractions equilibrated(const SpaceInput &in, const BoundaryTractions &boundary, 
       });
   const DeviceView<double **> fetched = exchanges.of_nodes.fetched(served);
   const int per_facet = 3 * functions;
-  const Tractions t = mean; // of a facet by its own moments
+  const Tractions &t = mean; // of a facet by its own moments
   const auto from = in.tables.from_moments;
   const auto load = boundary.load;
   const SpaceFacets facets = in.facets;
