@@ -45,9 +45,8 @@ Teuchos::ParameterList valid_adapt_parameters()
       "An interval for the energy, and a bound of the error in the energy norm: `estimated` by the recovered stress, "
       "which may be too small, or `guaranteed`. Guaranteed are bodies that displacements hold, in the plane and of "
       "revolution of triangles or parallelograms on straight contact sides, in space of tetrahedra, or hexahedra of "
-      "order 1, on flat "
-      "ones; for "
-      "other decks it is refused. It takes about as long as three runs without contact, in space as ten.");
+      "order 1, on flat ones; for other decks it is refused. It takes about as long as three runs without contact, in "
+      "space as ten.");
   valid.set("Exact Energy", std::numeric_limits<double>::quiet_NaN(),
             "J of the exact solution [J], in 2D per m, to compare the estimate with; nan, which is to leave it out: "
             "unknown.");

@@ -35,8 +35,8 @@ struct HighestOrder {
       const int b = (a + 1) % num_vertices, m = quadratic ? num_vertices + a : -1;
       const double deeper = added(f, a, b, m, int(pressed)), more = added(f, a, b, m, int(pressure));
       const int nodes[3] = {m, a, b};
-      bool gives_way =
-          true; // all along: past a jump of the gap, and where the foundation begins to give way, differences tell of a kink
+      // All along the edge: beside a jump of the gap, and where the foundation begins to give way, the difference is that of a kink.
+      bool gives_way = true;
       for (int k = quadratic ? 0 : 1; k < 3; ++k)
         gives_way = gives_way && at(f, nodes[k], pressure) > 0 && at(f, nodes[k], pressed) > 0;
       if (!gives_way) continue;
