@@ -10,9 +10,12 @@
 namespace rpc
 {
 
+/// Values on the host, (nodes, components).
+using NodeValues = decltype(to_host(DeviceView<double **>()));
+
 /// What a vector has at some nodes, on the host: the rest of it stays on the device.
 /// @param v  (nodes of this rank * components)   @return (nodes.size(), components)
-inline auto values_at(const Vector &v, const std::vector<LO> &nodes, const int components)
+inline NodeValues values_at(const Vector &v, const std::vector<LO> &nodes, const int components)
 {
   const auto node = device_values(nodes, "rpc::nodes");
   const auto from = device_read(v);
