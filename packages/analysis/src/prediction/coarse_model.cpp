@@ -3,6 +3,7 @@
 
 #include "rpc/analysis/rules.hpp"
 #include "rpc/solver/exact_line_search.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <Teuchos_LAPACK.hpp>
@@ -287,15 +288,17 @@ private:
   const std::vector<double> &moved_, &along_;
 };
 
-/// At most `most` steps of Newton's method with exact step lengths. @param[in,out] x  start, end   @param now  the states where it has converged
-CoarseModel::Ends CoarseModel::follow_newton(const int most, Unknowns &x, ModelStates &now)
+/// Newton's method with exact step lengths, from no change. @return the states where it has converged; none: it has not
+std::optional<ModelStates> CoarseModel::choose()
 {
+  Unknowns x{std::vector<double>(size_, 0.), std::vector<double>(learnt_.size(), 0.)};
+  ModelStates now;
   const std::size_t n = data_.size();
   now.state.resize(n);
   now.pressure.resize(n);
   System system;
   system.stiffness.resize(n);
-  for (int step = 0; step < most; ++step) {
+  for (int step = 0; step < solver::newton_rules.most_inner_steps; ++step) {
     const std::vector<double> moved = points_moved(x);
     for (std::size_t i = 0; i < n; ++i) {
       now.state[i] = state(i, moved[i]);
@@ -303,7 +306,7 @@ CoarseModel::Ends CoarseModel::follow_newton(const int most, Unknowns &x, ModelS
       system.stiffness[i] = contact::branch_stiffness(now.state[i], data_[i].stiffness, data_[i].law);
     }
     const Unknowns elastic = elastic_forces(x);
-    if (!factorize(system)) return Ends::fails;
+    if (!factorize(system)) return {};
     const Unknowns d = direction(system, gradient(elastic, now.pressure));
     const std::vector<double> along = points_moved(d);
     bool same = true;
@@ -311,25 +314,15 @@ CoarseModel::Ends CoarseModel::follow_newton(const int most, Unknowns &x, ModelS
       same = same && state(i, moved[i] + along[i]) == now.state[i];
       now.pressure[i] = pressure(i, moved[i] + along[i]);
     }
-    if (same) return Ends::settled;
+    if (same) return now;
     const Unknowns forces = elastic_forces(d);
     const double slope = dot(elastic.y, d.y) + dot(elastic.part, d.part),
                  curvature = dot(forces.y, d.y) + dot(forces.part, d.part);
     const double t = solver::exact_step(Line(*this, slope, curvature, moved, along));
-    if (!(t > 0 && std::isfinite(t))) return Ends::fails;
+    if (!(t > 0 && std::isfinite(t))) return {};
     x.move(t, d);
   }
-  return Ends::goes_on;
-}
-
-std::optional<ModelStates> CoarseModel::choose()
-{
-  Unknowns x{std::vector<double>(size_, 0.), std::vector<double>(learnt_.size(), 0.)};
-  ModelStates found;
-  Ends ends = follow_newton(choice_rules.model_steps, x, found);
-  if (ends == Ends::goes_on && follow_path(x)) ends = follow_newton(choice_rules.model_steps, x, found);
-  if (ends != Ends::settled) return {};
-  return found;
+  return {};
 }
 
 } // namespace rpc::analysis

@@ -74,7 +74,6 @@ private:
     std::vector<double> S;                             // Cholesky factor of what is left for the z_j
   };
   class Line;
-  class Path;
   std::vector<double> points_moved(const Unknowns &x) const;
   std::vector<double> nodal_forces(const std::vector<double> &p) const;
   Unknowns elastic_forces(const Unknowns &x) const;
@@ -85,9 +84,6 @@ private:
   Unknowns gradient(const Unknowns &elastic, std::vector<double> pressure) const;
   bool factorize(System &system);
   Unknowns direction(const System &system, const Unknowns &gradient) const;
-  enum class Ends { settled, goes_on, fails };
-  Ends follow_newton(int most, Unknowns &x, ModelStates &now);
-  bool follow_path(Unknowns &x);
 
   int size_;
   solver::SymmetricEntries K_;                   // of the lower half, row after row

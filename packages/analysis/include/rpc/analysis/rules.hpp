@@ -52,8 +52,6 @@ struct ChoiceRules {
                              "theory.md (5.8d): what inexact solves leave"};
   Rule<double> part_of_scale{0.25, "choice.part_of_scale", "scale of the coarser mesh's compliance over the least observed one [-]",
                              "theory.md (5.8d)"};
-  Rule<int> model_steps{20, "choice.model_steps", "Newton steps of the model before its interior path, and after it [-]",
-                        "theory.md (5.8f): ten in the mean"};
   // When Newton's method hands over
   Rule<int> most_short_steps{3, "choice.most_short_steps", "Newton steps that ended at a kink at once: blocked [-]", "not measured"};
   Rule<double> left_per_step{0.5, "choice.left_per_step", "part of the way that a Newton step may leave in the mean, else it is slow [-]",
@@ -71,7 +69,7 @@ struct ChoiceRules {
 };
 inline constexpr_rules ChoiceRules choice_rules;
 
-/// The interior-point method, on the body and on the coarser mesh that chooses states. doc/theory.md (5.15) to (5.20), (5.8f)
+/// The interior-point method. doc/theory.md (5.15) to (5.20)
 struct PathRules {
   Rule<double> error{0.1, "path.error", "error in energy of a linear solve [-]",
                      "0.03 saves no step; a residual tells nothing of how far a thin body has bent"};
@@ -83,7 +81,6 @@ struct PathRules {
                      "complementarity gap, relative, below which settled states are tried; then over the gap of the last trial [-]", "not measured"};
   Rule<double> last_gap{1e-8, "path.last_gap", "gap that ends the path [-]", "not measured"};
   Rule<int> trial_changes{2, "path.trial_changes", "choices without progress from tried states [-]", "not measured"};
-  Rule<double> model_gap{3e-6, "path.model_gap", "gap that ends the path on the coarser mesh [-]", "not measured"};
 };
 inline constexpr_rules PathRules path_rules;
 
