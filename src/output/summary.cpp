@@ -299,8 +299,10 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   if (const auto drawn = obstacle_spring_force(scene, s))
     json["obstacle_spring_force"] = vector_json(*drawn, mesh.dim());
   json["side_displacement"] = nlohmann::ordered_json::object();
+  std::vector<std::string> sides;
+  for (const mesh::Side &side : mesh.sides) sides.push_back(side.name);
   if (s.has_results() && s.u != Teuchos::null)
-    for (const auto &side : analysis::side_displacements(s.discretization, *s.u))
+    for (const auto &side : analysis::side_displacements(s.discretization, *s.u, sides))
       json["side_displacement"][side.side] = {{"mean", vector_json(side.mean, mesh.dim())}, {"max", side.largest}};
   add_shown(json, analysis::residual_quantities, s.uzawa.residuals, scope);
   json["residual_tolerance"] = scene.step.uzawa.tolerance;

@@ -156,7 +156,7 @@ TEST(UpdatedOperator, OfLargePenaltiesLeavesNoRoundingInTheElasticProduct)
   Vector Ku(s.u->getMap()), same(s.u->getMap());
   s.K.apply(*s.u, Ku);
   s.H.set(s.points, s.added([](LO) { return 1e12; }));
-  s.H.apply_base(*s.u, same);
+  s.H.shared_base()->apply(*s.u, same);
   same.update(-1., Ku, 1.);
   EXPECT_LE(same.norm2(), 1e-15 * Ku.norm2());
   s.H.set(s.points, s.added([](LO) { return 0.; }));
@@ -235,7 +235,7 @@ TEST(UpdatedOperator, RoundsTheBodyButNotTheUpdate)
     if (with_update)
       rounded ? s.H.apply_rounded(*s.u, y) : s.H.apply(*s.u, y);
     else
-      rounded ? s.H.apply_base_rounded(*s.u, y) : s.H.apply_base(*s.u, y);
+      rounded ? s.H.apply_base_rounded(*s.u, y) : s.H.shared_base()->apply(*s.u, y);
     return y;
   };
   const auto distance = [](Vector a, const Vector &b) {

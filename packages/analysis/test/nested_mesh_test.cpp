@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/nested_mesh.hpp"
 
+#include "ancestor.hpp"
 #include "rpc/analysis/solver_state.hpp"
 #include "rpc/fem/interpolation.hpp"
 #include "rpc/mesh/box.hpp"
@@ -242,10 +243,10 @@ TEST(NestedMesh, ServesAProblemOnAParent)
     const Problem problem = problem_on(element, mesh);
     const auto coarser = problem.coarser(4, 1);
     ASSERT_NE(coarser, nullptr);
-    EXPECT_EQ(coarser->discretization().mesh, mesh::ancestor(mesh, element.dim == 2 ? 2 : 1));
+    EXPECT_EQ(coarser->discretization().mesh, test::ancestor(mesh, element.dim == 2 ? 2 : 1));
     const auto coarsest = problem.coarser(100, 1);
     ASSERT_NE(coarsest, nullptr);
-    EXPECT_EQ(coarsest->discretization().mesh, mesh::ancestor(mesh, 3));
+    EXPECT_EQ(coarsest->discretization().mesh, test::ancestor(mesh, 3));
     EXPECT_EQ(coarsest->coarser(4, 1), nullptr);
   }
 }

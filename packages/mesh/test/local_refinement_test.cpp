@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Triangles and tetrahedra that are halved where a field of sizes asks for it.
 
+#include "ancestor.hpp"
 #include "expect_error.hpp"
 #include "refined_meshes.hpp"
 #include "rpc/mesh/make_mesh.hpp"
@@ -125,7 +126,7 @@ TEST(LocalRefinement, IsTheSameOnAnyNumberOfRanks)
     const Shared mesh = mesh::refined_to(dealt(whole, world()), field),
                  serial = mesh::refined_to(dealt(whole, alone()), field);
     EXPECT_GT(serial->num_cells(), 2 * whole.num_cells());
-    for (Shared part = mesh, all = serial; part; part = mesh::ancestor(part, 1), all = mesh::ancestor(all, 1)) {
+    for (Shared part = mesh, all = serial; part; part = test::ancestor(part, 1), all = test::ancestor(all, 1)) {
       test::expect_part_of(*all, *part);
       test::expect_cells_around_owned_nodes(*all, *part);
     }
@@ -201,7 +202,7 @@ TEST(LocalRefinement, LeadsBackToItsParents)
     const Shared coarse = dealt(sheared_block(element), world());
     Shared fine = mesh::refined_to(coarse, graded(element.dim, element.dim == 2 ? 0.005 : 0.04));
     int levels = 0;
-    for (; fine != coarse; fine = mesh::ancestor(fine, 1), ++levels) {
+    for (; fine != coarse; fine = test::ancestor(fine, 1), ++levels) {
       ASSERT_TRUE(fine->parents);
       const Mesh &parent = *fine->parents->mesh;
       const auto weights = mesh::child_weights(parent.element, fine->element, fine->parents->vertices);

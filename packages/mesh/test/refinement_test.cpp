@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/mesh/refinement.hpp"
 
+#include "ancestor.hpp"
 #include "expect_error.hpp"
 #include "refined_meshes.hpp"
 #include "rpc/mesh/make_mesh.hpp"
@@ -149,9 +150,9 @@ TEST(Refinement, FollowsTheMapOfCurvedCells)
 TEST(Refinement, LeadsBackToItsParents)
 {
   const Shared coarse = dealt(sheared_block({2, 1}), world()), fine = refined(coarse, 3);
-  EXPECT_EQ(mesh::ancestor(fine, 3), coarse);
-  EXPECT_EQ(mesh::ancestor(fine, 0), fine);
-  EXPECT_EQ(mesh::ancestor(fine, 4), nullptr);
+  EXPECT_EQ(test::ancestor(fine, 3), coarse);
+  EXPECT_EQ(test::ancestor(fine, 0), fine);
+  EXPECT_EQ(test::ancestor(fine, 4), nullptr);
   EXPECT_EQ(fine->parents->cell.size(), std::size_t(fine->num_cells()));
 }
 
@@ -185,7 +186,7 @@ TEST(Refinement, KeepsTheBodyOfAMshFile)
       const double before = test::side_measure(coarse, side.name), after = test::side_measure(fine, side.name);
       EXPECT_NEAR(after, before, 1e-4 * before) << side.name; // by quadrature, of roots on curved sides
     }
-    EXPECT_EQ(mesh::ancestor(std::make_shared<Mesh>(fine), 2)->element.name(), coarse.element.name());
+    EXPECT_EQ(test::ancestor(std::make_shared<Mesh>(fine), 2)->element.name(), coarse.element.name());
     EXPECT_EQ(sum_all(fine.comm(), GO(fine.num_owned_cells)), power(4, coarse.dim()) * coarse.num_owned_cells);
   }
 }

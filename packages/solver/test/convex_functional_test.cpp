@@ -93,14 +93,14 @@ public:
   double value(const Vector &u) const override
   {
     Vector Ku(u.getMap());
-    hessian_->apply_base(u, Ku);
+    hessian_->shared_base()->apply(u, Ku);
     double sum = 0;
     for (const double x : values_of(u)) sum += hardness_ * std::pow(std::max(0., x - wall), 2) / 2 - push * x;
     return u.dot(Ku) / 2 + sum_all(*u.getMap()->getComm(), sum);
   }
   void gradient(const Vector &u, Vector &F) const override
   {
-    hessian_->apply_base(u, F);
+    hessian_->shared_base()->apply(u, F);
     const auto x = values_of(u);
     const auto to = F.getLocalViewHost(Tpetra::Access::ReadWrite);
     for (std::size_t i = 0; i < x.size(); ++i) to(i, 0) += hardness_ * std::max(0., x[i] - wall) - push;
@@ -118,7 +118,7 @@ public:
   std::unique_ptr<LineFunction> along(const Vector &u, const Vector &d, const Vector &F) const override
   {
     Vector Kd(d.getMap());
-    hessian_->apply_base(d, Kd);
+    hessian_->shared_base()->apply(d, Kd);
     return std::make_unique<AlongTheChain>(u.getMap()->getComm(), values_of(u), values_of(d), hardness_, F.dot(d),
                                            d.dot(Kd));
   }
@@ -147,7 +147,7 @@ private:
       Value value{std::vector<double>(n), std::vector<double>(n * n)};
       for (std::size_t k = 0; k < n; ++k) {
         value.gradient[k] = directions_[k]->dot(F);
-        chain_.hessian_->apply_base(*directions_[k], Hd);
+        chain_.hessian_->shared_base()->apply(*directions_[k], Hd);
         const auto d = values_of(*directions_[k]);
         {
           const auto to = Hd.getLocalViewHost(Tpetra::Access::ReadWrite);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/load_history.hpp"
 
-#include "body/mean_displacements.hpp"
 #include "body/obstacle_force.hpp"
 #include "rpc/analysis/quantities.hpp"
+#include "rpc/analysis/side_displacements.hpp"
 #include "rpc/contact/node_columns.hpp"
 #include "rpc/core/interrupt.hpp"
 #include "rpc/core/timed.hpp"
@@ -158,8 +158,7 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
     last_.patches = contact::counted(contact::contact_patches(*problem_->discretization().mesh,
                                                               problem_->contact_sides(), s.step.contact, s.contact));
     last_.body = fem::body_peaks(problem_->discretization(), problem_->model().materials, *s.u);
-    if (!mean_displacements_) mean_displacements_ = std::make_shared<const MeanDisplacements>(*problem_);
-    last_.displacements = (*mean_displacements_)(*s.u);
+    last_.displacements = held_displacements(*problem_, *s.u);
     last_.rigid_motions = s.rigid_motions;
     last_.rigid_forces = s.rigid_forces;
     const auto &rigid = s.step.elastic.dirichlet.rigid;

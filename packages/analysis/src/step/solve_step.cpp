@@ -3,12 +3,12 @@
 /// functions that it calls follow.
 #include "rpc/analysis/solve_step.hpp"
 
-#include "body/mean_displacements.hpp"
 #include "body/obstacle_force.hpp"
 #include "rpc/analysis/active_set.hpp"
 #include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/analysis/rules.hpp"
 #include "rpc/analysis/same_active_set.hpp"
+#include "rpc/analysis/side_displacements.hpp"
 #include "rpc/contact/between_nodes.hpp"
 #include "rpc/contact/clearance.hpp"
 #include "rpc/contact/energies.hpp"
@@ -376,7 +376,7 @@ void read_tied(const Problem &problem, const StepOptions &options, StepSolution 
   const auto &conditions = problem.model().dirichlet;
   if (s.uzawa.converged && obstacle_rests(problem, s, step_rules.of_rounding * options.uzawa.tolerance))
     contact::settle_tied_points(problem.discretization(), s.step.contact, dirichlet, problem.model().contact, s.state);
-  s.displacements = MeanDisplacements(problem)(*s.u);
+  s.displacements = held_displacements(problem, *s.u);
   const auto moved = means(*dirichlet.tied, *s.u);
   const auto groups = fem::moved_by_force(conditions);
   for (std::size_t j = 0; j < groups.size(); ++j) s.displacements[groups[j].condition][groups[j].component] = moved[j];

@@ -194,11 +194,4 @@ Mesh halved(const std::shared_ptr<const Mesh> &coarse, const std::vector<Halving
   return mesh_of(fine, coarse);
 }
 
-std::shared_ptr<const Mesh> ancestor(const std::shared_ptr<const Mesh> &mesh, const int levels)
-{
-  std::shared_ptr<const Mesh> result = mesh;
-  for (int k = 0; k < levels && result; ++k) result = result->parents ? result->parents->mesh : nullptr;
-  return result;
-}
-
 } // namespace rpc::mesh

@@ -30,8 +30,6 @@ public:
   RCP<const Map> getRangeMap() const override { return K_->getRangeMap(); }
   bool hasTransposeApply() const override { return false; }
 
-  /// Ku <- K u.
-  void apply_base(const Vector &u, Vector &Ku) const { K_->apply(u, Ku); }
   /// y <- (H - C) x and y <- K x, up to single precision where that saves time: for preconditioners. See allow_rounding().
   void apply_rounded(const MultiVector &x, MultiVector &y) const;
   void apply_base_rounded(const MultiVector &x, MultiVector &y) const;

@@ -66,8 +66,6 @@ struct StepRecord {
 /// @param t  of the step, or of the part of it that failed
 StepRecord broken_off(const Model &model, StepRecord until_then, double t, const std::string &reason);
 
-class MeanDisplacements;
-
 /// Steps one after another on one mesh: each starts from the one before, on the dents that it has left. One stiffness matrix and one
 /// multigrid serve all of them, also where gaps and normals change.
 ///
@@ -158,7 +156,6 @@ private:
   Remembered kept_;
   std::optional<Offered> offered_;
   StepRecord last_;
-  std::shared_ptr<const MeanDisplacements> mean_displacements_; // made when it is asked for
   double energy_tolerance_ = std::numeric_limits<double>::infinity();
   int balance_halvings_ = 0;
   double tried_ = 0; // t of the last (part of a) step that was begun

@@ -70,8 +70,6 @@ public:
     for (int d = 0; d < 3; ++d) block.end[d] = cells_[d];
     return block;
   }
-  /// The first gid of a rank, or of the ranks above one that has none.
-  KOKKOS_INLINE_FUNCTION GO node_offset(const int rank) const { return offset_of_block(block_from(rank)); }
   KOKKOS_INLINE_FUNCTION GO node_gid(const Index &node) const
   {
     int b[3] = {0, 0, 0};

@@ -39,7 +39,4 @@ using ChildWeights = std::vector<std::vector<std::vector<double>>>;
 /// @param coarse, fine  of one shape and dimension; orders may differ
 ChildWeights child_weights(const Element &coarse, const Element &fine, const ChildVertices &vertices);
 
-/// The mesh that is reached by going `levels` times to the parents; null where there are not as many.
-std::shared_ptr<const Mesh> ancestor(const std::shared_ptr<const Mesh> &mesh, int levels);
-
 } // namespace rpc::mesh
