@@ -58,7 +58,7 @@ Teuchos::ParameterList valid_prediction_parameters()
   Teuchos::ParameterList valid("Nested Iteration");
   valid.set("Enabled", true,
             "Whether a solution on a coarser mesh, itself predicted by one on a still coarser mesh, is the start: for "
-            "boxes, files of gmsh and refined meshes of 500 nodes and more, of any size with friction, but for "
+            "boxes, files of gmsh and refined meshes of more than 1000 unknowns, of any size with friction, but for "
             "quadrilaterals and hexahedra of a .msh that do not lie in layers.");
   valid.set("Coarsening", 4.,
             "Ratio of cell lengths from one mesh to the next, in [1.5, 100]. Boxes of order 1 are halved until the "

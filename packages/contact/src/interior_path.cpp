@@ -160,7 +160,7 @@ InteriorPath::InteriorPath(const SmoothedFunctional &functional, RCP<UpdatedOper
 void InteriorPath::join(const Vector &u)
 {
   mu_ = interior_rules.first_mu * pressure_ * length_;
-  join_all(functional_.points().points, u, pressure_, mu_, interior_rules.start_slope * pressure_ / length_, at_);
+  join_all(functional_.points().points, u, pressure_, mu_, pressure_ * pressure_ / mu_, at_);
 }
 
 void InteriorPath::linearize(const Vector &u, Vector &F)

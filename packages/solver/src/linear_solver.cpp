@@ -26,9 +26,10 @@ namespace rpc::solver
 namespace
 {
 
+/// Iterations are counted to 1e-8.
 double fair(const double tolerance)
 {
-  return linear_rules.fair_iterations * std::min(1., std::log(tolerance) / std::log(linear_rules.full_tolerance));
+  return linear_rules.fair_iterations * std::min(1., std::log(tolerance) / std::log(1e-8));
 }
 
 /// How a linear solve went that was not good.
@@ -114,7 +115,7 @@ struct LinearSolver::Impl {
   void count(Candidate &candidate);
   Result attempt(const Vector &b, Vector &x, const Accuracy &wanted);
   const Factor::Prospect *prospect();
-  bool sparse_pays(double iterations_in_all, double tolerance);
+  bool sparse_pays(double iterations_in_all, double fair_ones);
   bool sparse_pays_now(const Convergence &seen, double tolerance);
   void choose_before_the_first_solve();
   bool goes_on(Outcome outcome, const std::string &reason);
@@ -167,11 +168,11 @@ const Factor::Prospect *LinearSolver::Impl::prospect()
 
 /// Whether the iterations that CG has lost, and will lose in this solve and those to come if each takes so many, take longer than a sparse
 /// factor.                                                                                                        (4.10)
-bool LinearSolver::Impl::sparse_pays(const double iterations_in_all, const double tolerance)
+bool LinearSolver::Impl::sparse_pays(const double iterations_in_all, const double fair_ones)
 {
   if (!may_be_sparse) return false;
   const double lost =
-      seconds_of_cg.counted * (lost_iterations + solves_to_come * std::max(iterations_in_all - fair(tolerance), 0.));
+      seconds_of_cg.counted * (lost_iterations + solves_to_come * std::max(iterations_in_all - fair_ones, 0.));
   if (lost < cost_model.analysis_of_row * static_cast<double>(H->getDomainMap()->getGlobalNumElements())) return false;
   const auto *const found = prospect();
   return found && found->cost.seconds < lost;
@@ -181,7 +182,7 @@ bool LinearSolver::Impl::sparse_pays(const double iterations_in_all, const doubl
 bool LinearSolver::Impl::sparse_pays_now(const Convergence &seen, const double tolerance)
 {
   if (seen.iterations() < linear_rules.first_iterations) return false;
-  return sparse_pays(seen.iterations_in_all(tolerance, options.max_iterations), tolerance) &&
+  return sparse_pays(seen.iterations_in_all(tolerance, options.max_iterations), fair(tolerance)) &&
          seen.iterations() * seconds_of_cg.measured >= linear_rules.part_to_tell * sparse->prospect().cost.seconds;
 }
 
@@ -200,7 +201,7 @@ void LinearSolver::Impl::choose_before_the_first_solve()
   if (is_open && body.is_thin && take_sparse("the body is one thin layer of cells")) return;
   const double expected = options.expected_iterations;
   if (!(expected > 0)) return;
-  if (expected > options.max_iterations ? !prospect() : !sparse_pays(expected, linear_rules.full_tolerance)) return;
+  if (expected > options.max_iterations ? !prospect() : !sparse_pays(expected, linear_rules.fair_iterations)) return;
   take_sparse("about " + std::to_string(static_cast<int>(expected)) + " CG iterations expected");
 }
 

@@ -2,6 +2,7 @@
 #include "rpc/analysis/coarse_model.hpp"
 
 #include "rpc/analysis/rules.hpp"
+#include "rpc/core/memory.hpp"
 #include "rpc/solver/exact_line_search.hpp"
 #include "rpc/solver/rules.hpp"
 
@@ -74,7 +75,8 @@ CoarseModel::CoarseModel(const int size, const solver::SymmetricEntries &K, solv
                          std::vector<ModelPoint> data)
     : size_(size), K_(sorted(K)), matrix_(K_.value), points_(std::move(points)), data_(std::move(data)), first_{0}
 {
-  if (count_pairs(points_) > static_cast<std::size_t>(choice_rules.most_pairs)) return;
+  if (static_cast<double>(count_pairs(points_) * sizeof(int)) > solver::linear_rules.kept_of_free * memory_left())
+    return;
   std::vector<std::size_t> row(size_ + 1); // where its entries begin
   for (int i = 0; i <= size_; ++i) row[i] = std::lower_bound(K_.row.begin(), K_.row.end(), i) - K_.row.begin();
   bool all_found = true; // the unknowns of a point are those of one cell

@@ -25,8 +25,8 @@ std::string no_prediction(const Problem &fine, const contact::ContactNodes &cont
   if (contact.num_total == contact.num_fixed) return "no node can touch";
   if (!enabled) return "switched off";
   const bool takes_more = contact.friction.anywhere || pressed_by_force(fine.model()) != nullptr;
-  if (!takes_more && fine.discretization().mesh->owned_nodes->getGlobalNumElements() <
-                         static_cast<Tpetra::global_size_t>(step_rules.least_nodes_predicted))
+  if (!takes_more && fine.discretization().owned_dofs->getGlobalNumElements() <=
+                         static_cast<Tpetra::global_size_t>(solver::linear_rules.few_rows))
     return "the mesh is small";
   return "";
 }

@@ -151,8 +151,8 @@ bool ActiveSetLoop::newton_hands_over(MinimizationSteps &steps)
     take_over(u, path_rules.trial_changes);
     return true;
   }
-  const bool is_blocked = newton_.short_steps >= choice_rules.most_short_steps;
-  const bool is_slow = newton_.steps > 1 && newton_.left > std::pow(choice_rules.left_per_step, newton_.steps);
+  const bool is_blocked = newton_.short_steps >= contact::interior_rules.many_short_steps;
+  const bool is_slow = newton_.steps > 1 && newton_.left > std::pow(1 - solver::newton_rules.full_step, newton_.steps);
   if (path_ == Path::ahead && (is_blocked || is_slow)) {
     take_path(u);
     return true;
@@ -269,7 +269,7 @@ bool ActiveSetLoop::may_settle()
 bool ActiveSetLoop::is_for_coarse_mesh() const
 {
   const bool was_needed = predicted_ && *predicted_ != FoundBy::choices; // more than choices by pressures, there
-  return was_needed || (steps_ >= choice_rules.steps_before_coarse && left_ > choice_rules.one_more) ||
+  return was_needed || (steps_ >= choice_rules.fewest_to_tell && left_ > choice_rules.one_more) ||
          choice_->overshoot > choice_rules.much * most_overshoot_;
 }
 

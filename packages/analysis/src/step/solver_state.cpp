@@ -4,6 +4,7 @@
 #include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/analysis/rules.hpp"
 #include "rpc/mesh/rules.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,8 +34,8 @@ double expected_iterations(const mesh::Mesh &mesh, const double nu)
 /// sparse factor may take less.                                                                                  (4.10d)
 double expected_of_mixed_form(const mesh::Mesh &mesh, const double nu)
 {
-  if (mesh.element.order == 2 || (mesh.dim() == 3 && mesh.box)) return linear_rules.expected_of_mixed;
-  return linear_rules.expected_of_mixed *
+  if (mesh.element.order == 2 || (mesh.dim() == 3 && mesh.box)) return solver::linear_rules.fair_iterations;
+  return solver::linear_rules.fair_iterations *
          (1 + linear_rules.cost_of_step * solver::degree_for_pressures(1 / (1 - 2 * nu)));
 }
 

@@ -103,7 +103,7 @@ std::optional<CoarsestSolver::Update> DirectSolver::follow(const double slight)
 {
   if (!may_follow_ || cost().seconds < linear_rules.short_time) return std::nullopt;
   const MatrixChanges changes = changes_since(factored_, *A_, dofs_per_node_);
-  for (double least = 0; least <= slight; least = least > 0 ? 10 * least : double(linear_rules.least_left_out)) {
+  for (const double least : {0., slight}) {
     const LowRankTerms wanted = low_rank_terms(changes, least, dofs_per_node_);
     if (cost().seconds_of_column * update_.num_new(wanted.terms) > linear_rules.worth_a_factor * cost().seconds)
       continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "krylov/convergence.hpp"
 
+#include "rpc/core/rules.hpp"
 #include "rpc/solver/rules.hpp"
 
 #include <algorithm>
@@ -26,7 +27,7 @@ double Convergence::iterations_in_all(const double tolerance, const double most)
 void EnergyError::add(const double energy)
 {
   const double gain = std::max(energy - energy_, 0.);
-  if (gain_ >= 0) rate_ = gain_ > 0 ? std::min<double>(gain / gain_, linear_rules.slowest) : linear_rules.slowest;
+  if (gain_ >= 0) rate_ = gain_ > 0 ? std::min<double>(gain / gain_, headway_rules.falls) : headway_rules.falls;
   energy_ = energy;
   gain_ = gain;
 }

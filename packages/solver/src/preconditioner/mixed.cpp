@@ -247,7 +247,7 @@ KrylovResult Mixed::solve(const Vector &b, Vector &x, const Accuracy &wanted, co
     right_side.putScalar(0);
     s.displacements(right_side)->assign(rest);
     const KrylovResult pass = s.krylov->solve(*s.triangular, false, right_side, found,
-                                              std::min<double>(enough / left, linear_rules.residual_of_pass));
+                                              std::min<double>(enough / left, newton_rules.largest_residual));
     if (pass.broken) {
       result.broken = true;
       result.reason = pass.reason;

@@ -26,7 +26,8 @@ struct ChoiceRules {
                          "measurements.md: Limits on active-set updates"};
   Rule<double> most_left_creeping{4, "choice.most_left_creeping", "the same by the speed at which the contact edge moves [choices]",
                                   "measurements.md: Limits on active-set updates"};
-  Rule<int> fewest_to_tell{4, "choice.fewest_to_tell", "choices before a slow edge may end them [-]", "measurements.md: Limits on active-set updates"};
+  Rule<int> fewest_to_tell{4, "choice.fewest_to_tell", "choices before a slow edge may end them, and before a coarser mesh chooses without overshoot [-]",
+                           "measurements.md: Limits on active-set updates"};
   Rule<double> much{0.5, "choice.much", "overshoot with which a choice without progress counts twice, and a coarser mesh chooses [-]",
                     "theory.md (5.8a): bodies of equal sides stay below"};
   Rule<double> far_too_much{1, "choice.far_too_much", "overshoot that ends choices [-]", "measurements.md: Limits on active-set updates"};
@@ -37,12 +38,10 @@ struct ChoiceRules {
   Rule<int> most_idle_turns{4, "choice.most_idle_turns", "idle steps in a row, friction in space [-]", "not measured"};
   Rule<double> negligible{1e-3, "choice.negligible", "violations that change no state, over the tolerance of pressures [-]", "not measured"};
   // When a coarser mesh chooses
-  Rule<int> steps_before_coarse{4, "choice.steps_before_coarse", "steps before a coarser mesh chooses without overshoot [-]", "not measured"};
   Rule<double> one_more{1, "choice.one_more", "predicted changes to go above which it does [choices]", "not measured"};
   Rule<int> most_idle_coarse{3, "choice.most_idle_coarse", "of these in a row without fewer changes than before [-]", "not measured"};
   Rule<GO> most_coarse_unknowns{60'000, "choice.most_coarse_unknowns", "unknowns of the coarser mesh, whose stiffness rank 0 holds [-]",
                                 "not measured"};
-  Rule<GO> most_pairs{30'000'000, "choice.most_pairs", "pairs of unknowns of the coarser mesh's points, for memory [-]", "not measured"};
   Rule<double> model_seconds{1, "choice.model_seconds", "time of a factor of the coarser mesh [s]", "not measured"};
   Rule<double> model_solves{
       on_gpu ? 10. : 1., "choice.model_solves",
@@ -53,9 +52,6 @@ struct ChoiceRules {
   Rule<double> part_of_scale{0.25, "choice.part_of_scale", "scale of the coarser mesh's compliance over the least observed one [-]",
                              "theory.md (5.8d)"};
   // When Newton's method hands over
-  Rule<int> most_short_steps{3, "choice.most_short_steps", "Newton steps that ended at a kink at once: blocked [-]", "not measured"};
-  Rule<double> left_per_step{0.5, "choice.left_per_step", "part of the way that a Newton step may leave in the mean, else it is slow [-]",
-                             "theory.md (5.9a)"};
   Rule<double> least_left{0.1, "choice.least_left", "part of the way that a Newton step is taken to leave at least [-]", "not measured"};
   Rule<int> most_confirmations{5, "choice.most_confirmations", "returns from Newton's method to choices [-]", "not measured"};
   Rule<double> ended_by_rounding{1e-3, "choice.ended_by_rounding",
@@ -104,7 +100,6 @@ struct StepRules {
   // Predictions
   Rule<double> near_equilibrium{1e-7, "step.near_equilibrium",
                                 "unbalanced forces over the load, residual of the contact law: no prediction is needed [-]", "not measured"};
-  Rule<GO> least_nodes_predicted{500, "step.least_nodes_predicted", "nodes below which a prediction costs as much as a solution without friction [-]", "not measured"};
   Rule<GO> fewest_points_telling{50, "step.fewest_points_telling", "contact points of a coarser mesh that tells which method to begin with [-]",
                                  "theory.md (5.11)"};
   Rule<double> boundary{0.65, "step.boundary", "growth of cells over that by numbers of nodes: boundaries have more [-]", "not measured"};
@@ -125,7 +120,6 @@ struct LinearRules {
                           "theory.md (4.15a)"};
   Rule<double> softer_tetrahedra{0.45, "body.softer_tetrahedra", "the soft part's where they have [-]", "theory.md (4.15a)"};
   // Iterations to expect, to 1e-8
-  Rule<double> expected_of_mixed{30, "body.expected_of_mixed", "of the mixed form [CG iterations]", "theory.md (4.10d)"};
   Rule<double> cost_of_step{0.035, "body.cost_of_step", "step of the polynomial for pressures [CG iterations]", "theory.md (4.10d)"};
   Rule<double> expected{4, "body.expected", "of other bodies, times (1 - 2 nu)^(-1/2) [CG iterations]", "theory.md (4.10b)"};
   Rule<double> expected_of_p1{6, "body.expected_of_p1", "the same of P1 [CG iterations]", "theory.md (4.10b)"};

@@ -13,16 +13,17 @@ namespace rpc::solver
 struct LinearRules {
   // Choice of a preconditioner.
   Rule<GO> few_rows{1000, "linear.few_rows",
-                    "unknowns up to which there is a factor from the start, and multigrid is one [-]",
+                    "unknowns up to which there is a factor from the start, multigrid is one, and a coarser mesh "
+                    "predicts nothing without friction [-]",
                     "coarser meshes save little there, and leave CG a rest"};
   Rule<GO> most_sparse_rows{3000000, "linear.most_sparse_rows",
                             "unknowns up to which a sparse factor is thought of [-]",
                             "its memory in the plane and in space"};
   Rule<int> first_iterations{15, "linear.first_iterations", "CG iterations before a factor is thought of [-]",
                              "(4.10)"};
-  Rule<int> fair_iterations{30, "linear.fair_iterations", "iterations of a solve that are not lost [-]", "(4.10)"};
-  Rule<double> full_tolerance{1e-8, "linear.full_tolerance", "|r|/|b| that counts of iterations mean [-]",
-                              "a definition"};
+  Rule<int> fair_iterations{30, "linear.fair_iterations",
+                            "iterations of a solve to 1e-8 that are not lost, and that the mixed form takes [-]",
+                            "(4.10), (4.10d)"};
   Rule<int> solves_with_contact{4, "linear.solves_with_contact", "solves to come with contact [-]", "random families"};
   Rule<double> part_to_tell{0.3, "linear.part_to_tell", "time of a factor before CG's rate is believed [-]",
                             "CG stalls at first, and is fast then, where layers are of unlike stiffness"};
@@ -31,8 +32,6 @@ struct LinearRules {
   // How CG goes on.
   Rule<int> window{20, "linear.window", "iterations that a rate is taken over [-]",
                    "CG stands still for ten now and then, (4.10a)"};
-  Rule<double> slowest{0.9, "linear.slowest", "largest ratio of one gain in energy to the one before [-]",
-                       "a stall is an error of ten gains, (4.10c)"};
   Rule<double> small_error{1e-4, "linear.small_error", "error at which a breakdown is that of rounding [-]",
                            "of a singular matrix most of the error is left"};
   Rule<double> large_error{1e-2, "linear.large_error", "error for one application of an exact factor [-]",
@@ -43,8 +42,6 @@ struct LinearRules {
   // The mixed form, (4.14), (4.15).
   Rule<int> iterations_of_pass{80, "linear.iterations_of_pass", "BiCGStab iterations before a restart [-]",
                                "its own residuals are no longer those of x by then"};
-  Rule<double> residual_of_pass{0.1, "linear.residual_of_pass", "largest residual ratio that a pass is asked for [-]",
-                                "its own residual is a little below that of H x = b"};
   Rule<double> degree_of_root{0.7, "linear.degree_of_root", "degree over the root of the condition number [-]",
                               "least time"};
   Rule<int> least_degree{4, "linear.least_degree", "degree for pressures at least [-]", "least time"};
@@ -94,9 +91,8 @@ struct LinearRules {
   Rule<int> most_width{200, "linear.most_width", "width of a band as numbered [-]", "times of both"};
   Rule<double> short_time{5e-3, "linear.short_time", "a factor made for the slightest change [s]", "not measured"};
   Rule<double> worth_a_factor{0.7, "linear.worth_a_factor", "time of an update over a factor's [-]", "(4.11)"};
-  Rule<double> least_left_out{1e-5, "linear.least_left_out",
-                              "least bound of changes left to CG, over own block [-]; off: 1", "(4.12)"};
-  Rule<double> kept_of_free{0.25, "linear.kept_of_free", "entries of an update over the free memory [-]",
+  Rule<double> kept_of_free{0.25, "linear.kept_of_free",
+                            "entries of an update, and of the model that chooses states, over the free memory [-]",
                             "not measured"};
   Rule<double> seconds_in_background{1, "linear.seconds_in_background", "factor made where an interrupt is seen [s]",
                                      "not measured"};
@@ -137,7 +133,8 @@ struct NewtonRules {
   Rule<double> forcing{5e-3, "newton.forcing", "|r|/|F| while the Hessian changes [-]",
                        "a rough direction leads down as well as an exact one"};
   Rule<double> largest_residual{0.1, "newton.largest_residual",
-                                "|r| of a direction at most, over |F|, and at the end over the target of |F| [-]",
+                                "|r| of a direction, and of a pass of the mixed form, at most, over the right side; at "
+                                "the end over the target of |F| [-]",
                                 "not measured"};
   Rule<double> cut_short{0.02, "newton.cut_short", "length of a step that ended at a kink [-]", "(4.6)"};
   Rule<double> to_the_minimum{1e-6, "newton.to_the_minimum", "|1 - length| of a step that has met no kink [-]",
@@ -152,7 +149,9 @@ struct NewtonRules {
       "measurements.md, 2026-11-30: no bound from 20 to 50 was met"};
   Rule<int> most_halvings{10, "newton.most_halvings",
                           "of an interval, in the search for the pieces of a line function [-]", "not measured"};
-  Rule<double> full_step{0.5, "newton.full_step", "length of a step that counts as full [-]", "not measured"};
+  Rule<double> full_step{0.5, "newton.full_step",
+                         "length of a step that counts as full; steps that are shorter in the mean are slow [-]",
+                         "(5.9a)"};
   Rule<int> most_idle{2, "newton.most_idle", "full steps on one piece without a fall [-]", "not measured"};
 };
 inline constexpr_rules NewtonRules newton_rules;
