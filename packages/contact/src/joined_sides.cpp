@@ -2,13 +2,16 @@
 #include "rpc/contact/joined_sides.hpp"
 
 #include "rpc/contact/rounding.hpp"
+#include "rpc/core/device_values.hpp"
 #include "rpc/core/parallel.hpp"
+#include "rpc/fem/surface.hpp"
 #include "rpc/mesh/box.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <unordered_map>
 
 namespace rpc::contact
 {
@@ -26,29 +29,39 @@ double gap_at_place(const ContactOptions &options, const Point &x, const Point &
 UnevenGap uneven_gap_of_side(const mesh::Mesh &mesh, const mesh::Side &side, const ContactOptions &options,
                              const ContactNodes &points, const ContactResult &result, const int k, const double least)
 {
-  const auto coords = to_host(mesh.coords);
   const auto node = to_host(side.facets), place = to_host(side.places());
   const auto point_node = to_host(points.node);
   const auto normal = to_host(points.normal);
   const auto pressure = to_host(result.pressure), u_nu = to_host(result.normal_displacement);
-  std::vector<LO> point(mesh.num_local_nodes(), -1);
-  for (LO i = points.first(k); i < points.first(k + 1); ++i) point[point_node(i)] = i;
-  UnevenGap worst;
+  std::unordered_map<LO, LO> point_at;
+  for (LO i = points.first(k); i < points.first(k + 1); ++i) point_at[point_node(i)] = i;
+  std::vector<LO> point, from,
+      to; // contact points of joined sides, their rows of coordinates and those of their images
   for (std::size_t f = 0; f < node.extent(0); ++f)
     for (std::size_t a = 0; a < node.extent(1); ++a) {
-      const LO i = point[node(f, a)];
-      if (place(f, a) == node(f, a) || i < 0) continue;
-      Point x{}, image{}, direction{};
-      for (int c = 0; c < mesh.dim(); ++c) {
-        x[c] = coords(node(f, a), c);
-        image[c] = coords(place(f, a), c);
-        direction[c] = normal(i, c);
-      }
-      const double here = gap_at_place(options, x, direction), there = gap_at_place(options, image, direction);
-      const double difference = std::abs(here - there);
-      const bool matters = pressure(i) > 0 || u_nu(i) - there > least;
-      if (matters && difference > least && difference > worst.difference) worst = {difference, x, k};
+      if (place(f, a) == node(f, a)) continue;
+      const auto found = point_at.find(node(f, a));
+      if (found == point_at.end()) continue;
+      point.push_back(found->second);
+      from.push_back(node(f, a));
+      to.push_back(place(f, a));
     }
+  const auto places = fem::node_positions(mesh, device_values(from, "rpc::contact::joined_points"));
+  const auto images = fem::node_positions(mesh, device_values(to, "rpc::contact::images"));
+  UnevenGap worst;
+  for (std::size_t j = 0; j < point.size(); ++j) {
+    const LO i = point[j];
+    Point x{}, image{}, direction{};
+    for (int c = 0; c < mesh.dim(); ++c) {
+      x[c] = places(j, c);
+      image[c] = images(j, c);
+      direction[c] = normal(i, c);
+    }
+    const double here = gap_at_place(options, x, direction), there = gap_at_place(options, image, direction);
+    const double difference = std::abs(here - there);
+    const bool matters = pressure(i) > 0 || u_nu(i) - there > least;
+    if (matters && difference > least && difference > worst.difference) worst = {difference, x, k};
+  }
   return worst;
 }
 

@@ -37,15 +37,16 @@ std::optional<std::string> hold_axis(const Discretization &d, const std::vector<
                                      const std::vector<double> &rounding,
                                      std::unordered_map<LO, Prescribed> &prescribed)
 {
-  const auto coords = to_host(d.mesh->coords);
+  const auto nodes = nodes_on_axis(d);
+  const auto node = to_host(nodes);
+  const HostPoints points = node_positions(*d.mesh, nodes);
   std::optional<std::string> conflict;
-  for (LO n = 0; n < d.mesh->num_owned_nodes(); ++n) {
-    if (coords(n, 0) > d.on_axis) continue;
-    Prescribed &dof = prescribed[rpc::dof(d.dim(), n, 0)];
+  for (std::size_t n = 0; n < node.extent(0); ++n) {
+    Prescribed &dof = prescribed[rpc::dof(d.dim(), node(n), 0)];
     if (dof.condition >= 0 && std::abs(dof.value) > rounding[dof.condition] && !conflict) {
       std::ostringstream message;
       message << "deck: \"" << conditions[dof.condition].path() << "->X\" must be 0 on the axis x = 0 of an "
-              << "axisymmetric body, got " << dof.value << " [m] at (" << coords(n, 0) << ", " << coords(n, 1)
+              << "axisymmetric body, got " << dof.value << " [m] at (" << points(n, 0) << ", " << points(n, 1)
               << "). Multiply it with x, or leave it out.";
       conflict = message.str();
     }

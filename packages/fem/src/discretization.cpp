@@ -6,6 +6,7 @@
 #include "fill_entries.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/parallel.hpp"
+#include "rpc/core/sparse_rows.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <array>
@@ -166,6 +167,17 @@ Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh, const Kinemati
   if (!d.axisymmetric()) d.congruent = congruent_cells(*d.mesh); // where cells are alike, radii are not
   d.node_to_cells = around_nodes(d.mesh->cells, d.mesh->num_owned_nodes());
   return d;
+}
+
+DeviceView<LO *> nodes_on_axis(const Discretization &d)
+{
+  const DeviceView<LO *> is_on_axis("rpc::fem::is_on_axis", d.mesh->num_owned_nodes());
+  const auto coords = d.mesh->coords;
+  const double axis = d.on_axis;
+  Kokkos::parallel_for(
+      "rpc::fem::is_on_axis", device_range(d.mesh->num_owned_nodes()),
+      KOKKOS_LAMBDA(const LO n) { is_on_axis(n) = coords(n, 0) <= axis; });
+  return sparse_rows(is_on_axis, "rpc::fem::on_axis").row;
 }
 
 NodeGraph Discretization::nodes() const

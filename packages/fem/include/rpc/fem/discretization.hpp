@@ -65,6 +65,9 @@ struct Discretization {
 /// @throws rpc::Error (bad_input) if it is none for a mesh in space, (bad_mesh) on every rank if a node of an axisymmetric body lies at r < 0, naming the farthest
 Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh, Kinematics kinematics = Kinematics::plane_strain);
 
+/// The nodes of an axisymmetric body that this rank owns on the axis, ascending.
+DeviceView<LO *> nodes_on_axis(const Discretization &d);
+
 /// The pattern of every matrix: fill-complete, columns ascending. Collective.
 RCP<const CrsGraph> dof_graph(const Discretization &d);
 
