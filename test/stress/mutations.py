@@ -24,6 +24,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 
 import corpus
 import mutators
@@ -169,11 +170,13 @@ def check(folder, code, stdout, stderr):
 
 
 def judge(options, mutation):
-    """(mutation, exit code, complaint, stderr) of one mutation."""
+    """(mutation, exit code, complaint, stderr, seconds) of one mutation."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="rpc_mutation_"))
     try:
         mutation.write(folder)
+        start = time.monotonic()
         code, stdout, stderr = run(options, folder, mutation.scene.deck)
+        seconds = time.monotonic() - start
         complaint = check(folder, code, stdout, stderr)
         if options.keep and (complaint or options.only is not None):
             kept = pathlib.Path(options.keep) / f"{options.seed}_{mutation.number}"
@@ -181,9 +184,20 @@ def judge(options, mutation):
             shutil.copytree(folder, kept)
             (kept / "stdout.txt").write_bytes(stdout)
             (kept / "stderr.txt").write_bytes(stderr)
-        return mutation, code, complaint, stderr
+        return mutation, code, complaint, stderr, seconds
     finally:
         shutil.rmtree(folder)
+
+
+def require_meshio(names):
+    """Damage to files that rpc converts by meshio shows nothing where python3 lacks it: each is refused for that."""
+    converted = [name for name in names if name.endswith((".inp", ".med", ".vtk", ".vtu"))]
+    if not converted or subprocess.run(["python3", "-c", "import meshio, h5py"], stderr=subprocess.DEVNULL, check=False).returncode == 0:
+        return
+    told = f"{converted[0]} and the like take a python3 with meshio and h5py, which the first one of PATH has not: all are refused for that"
+    if len(converted) == len(names):
+        sys.exit(told)
+    print(f"note: {told}", flush=True)
 
 
 def print_table(results):
@@ -216,15 +230,18 @@ def main():
 
     scenes = {name: scene for name, scene in corpus.scenes(SOURCE).items()
               if any(fnmatch.fnmatch(name, pattern) for pattern in options.decks.split(",")) and fnmatch.filter(scene.files, options.files)}
+    require_meshio([name for scene in scenes.values() for name in fnmatch.filter(scene.files, options.files)])
     numbers = range(options.first, options.first + options.count) if options.only is None else [options.only]
     failures = 0
     results = []
+    times = []
     said = collections.Counter()
     with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
         for result in pool.map(lambda number: judge(options, Mutation(options.seed, number, scenes, options.files)), numbers):
-            *result, stderr = result
+            *result, stderr, seconds = result
             mutation, code, complaint = result
             results.append(result)
+            times.append((seconds, mutation.number))
             said[re.sub(r"[-+.\w]*\d[-+.\w]*", "#", stderr.decode(errors="replace").strip())[:300]] += 1
             if options.only is not None:
                 print(f"{mutation.kind} of {mutation.file} for {mutation.scene.deck}: exit code {code}")
@@ -234,6 +251,7 @@ def main():
                       f"    {sys.argv[0]} --rpc={options.rpc} --seed={options.seed} '--decks={options.decks}' '--files={options.files}' --only={mutation.number} --keep=DIR",
                       flush=True)
     print_table(results)
+    print("slowest: " + ", ".join(f"{number} ({seconds:.1f} s)" for seconds, number in sorted(times, reverse=True)[:5]))
     if options.words:
         print("\n".join(f"{count:6} {words}" for words, count in sorted(said.items(), key=lambda item: -item[1])))
     return 1 if failures else 0
