@@ -50,13 +50,15 @@ std::vector<double> cells_in(const MeshData &mesh, const SizeField &sizes, const
 {
   const SizeTree<dim> size(sizes);
   const int width = mesh.element.num_nodes();
-  std::vector<double> cells;
-  for (int c = 0; c < mesh.num_cells(); ++c) {
+  std::vector<double> cells(mesh.num_cells());
+  const Kokkos::RangePolicy<Kokkos::DefaultHostExecutionSpace, Kokkos::Schedule<Kokkos::Dynamic>, int> all(
+      0, mesh.num_cells());
+  Kokkos::parallel_for("rpc::mesh::cells_to_come", all, [&](const int c) {
     SimplexVertices<dim> x;
     for (int v = 0; v <= dim; ++v)
       std::copy_n(&mesh.coords[std::size_t(dim) * mesh.cells[std::size_t(width) * c + v]], dim, x[v].begin());
-    cells.push_back(std::max(parts_of<dim>(x, size, 0), std::pow(2., dim * refinements)));
-  }
+    cells[c] = std::max(parts_of<dim>(x, size, 0), std::pow(2., dim * refinements));
+  });
   return cells;
 }
 

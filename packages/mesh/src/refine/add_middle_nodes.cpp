@@ -9,7 +9,7 @@
 
 #include <Teuchos_OrdinalTraits.hpp>
 #include <algorithm>
-#include <numeric>
+#include <array>
 #include <optional>
 
 namespace rpc::mesh
@@ -29,42 +29,45 @@ struct NewMesh {
   int size() const { return static_cast<int>(owned.size()); }
 };
 
-/// Cells in an order that does not depend on the number of ranks: by the ids of their vertices.
-std::vector<int> cells_by_ids(const LocalMesh &mesh)
+using HostRange = Kokkos::RangePolicy<Kokkos::DefaultHostExecutionSpace, int>;
+using CellIds = std::array<GO, 8>; // of a cell's vertices, ascending; unused ones are 0
+
+std::vector<CellIds> ids_of_cells(const LocalMesh &mesh)
 {
   const int width = mesh.element.num_vertices();
-  std::vector<std::vector<GO>> ids(mesh.num_cells());
-  for (int c = 0; c < mesh.num_cells(); ++c) {
-    for (int a = 0; a < width; ++a) ids[c].push_back(mesh.id[mesh.nodes_of(c)[a]]);
-    std::sort(ids[c].begin(), ids[c].end());
-  }
-  std::vector<int> order(mesh.num_cells());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](const int a, const int b) { return ids[a] < ids[b]; });
-  return order;
+  std::vector<CellIds> ids(mesh.num_cells());
+  Kokkos::parallel_for("rpc::mesh::ids_of_cells", HostRange(0, mesh.num_cells()), [&](const int c) {
+    for (int a = 0; a < width; ++a) ids[c][a] = mesh.id[mesh.nodes_of(c)[a]];
+    std::sort(ids[c].begin(), ids[c].begin() + width);
+  });
+  return ids;
 }
 
-/// The place of a node that several cells share is that of the first one by cells_by_ids(): cells differ in the last digits.
-void add_places(const LocalMesh &mesh, const Middles &middles, const NewPlaces &place, const std::vector<int> &cells,
+/// The place of a node that several cells share is that of the one with the lowest ids, whatever the number of ranks: cells differ in the last
+/// digits.
+void add_places(const LocalMesh &mesh, const Middles &middles, const NewPlaces &place, const std::vector<CellIds> &ids,
                 std::vector<double> &coords)
 {
   const int dim = mesh.dim();
-  coords.assign(std::size_t(dim) * middles.size(), 0);
-  std::vector<char> done(middles.size(), 0);
-  for (const int c : cells)
+  std::vector<int> cell(middles.size(), -1);
+  for (int c = 0; c < mesh.num_cells(); ++c)
     for (int e = 0; e < middles.per_cell; ++e) {
       const int m = middles.of(c)[e];
-      if (m < 0 || done[m] || middles.owner_vertex(m) >= mesh.num_owned_nodes()) continue;
-      done[m] = 1;
-      double *const x = &coords[std::size_t(dim) * m];
-      if (place) {
-        place(c, middles.slot[e], x);
-        continue;
-      }
-      for (int v = 0; v < middles.width; ++v)
-        for (int d = 0; d < dim; ++d)
-          x[d] += mesh.coords[std::size_t(dim) * middles.vertices_of(m)[v] + d] / middles.width;
+      if (m >= 0 && (cell[m] < 0 || ids[c] < ids[cell[m]])) cell[m] = c;
     }
+  coords.assign(std::size_t(dim) * middles.size(), 0);
+  Kokkos::parallel_for("rpc::mesh::new_places", HostRange(0, middles.size()), [&](const int m) {
+    if (cell[m] < 0 || middles.owner_vertex(m) >= mesh.num_owned_nodes()) return;
+    double *const x = &coords[std::size_t(dim) * m];
+    if (place) {
+      const int *const of_cell = middles.of(cell[m]);
+      place(cell[m], middles.slot[std::find(of_cell, of_cell + middles.per_cell, m) - of_cell], x);
+      return;
+    }
+    for (int v = 0; v < middles.width; ++v)
+      for (int d = 0; d < dim; ++d)
+        x[d] += mesh.coords[std::size_t(dim) * middles.vertices_of(m)[v] + d] / middles.width;
+  });
 }
 
 /// Collective.
@@ -73,8 +76,8 @@ NewMesh new_mesh(const LocalMesh &mesh, const std::vector<Middles> &kinds, const
 {
   std::vector<std::vector<double>> coords(kinds.size());
   std::vector<std::vector<char>> moved(kinds.size());
-  const std::vector<int> cells = cells_by_ids(mesh);
-  for (std::size_t k = 0; k < kinds.size(); ++k) add_places(mesh, kinds[k], place, cells, coords[k]);
+  const std::vector<CellIds> ids = ids_of_cells(mesh);
+  for (std::size_t k = 0; k < kinds.size(); ++k) add_places(mesh, kinds[k], place, ids, coords[k]);
   move_to_boundary(mesh, kinds, file, coords, moved);
 
   NewMesh made;
@@ -85,11 +88,11 @@ NewMesh new_mesh(const LocalMesh &mesh, const std::vector<Middles> &kinds, const
   GO next_id = static_cast<GO>(mesh.owned_nodes->getGlobalNumElements());
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     made.first.push_back(made.size());
-    const std::vector<GO> ids = ids_of(mesh, kinds[k], next_id);
-    made.id.insert(made.id.end(), ids.begin(), ids.end());
+    const std::vector<GO> new_ids = ids_of(mesh, kinds[k], next_id);
+    made.id.insert(made.id.end(), new_ids.begin(), new_ids.end());
     made.coords.insert(made.coords.end(), coords[k].begin(), coords[k].end());
     made.moved.insert(made.moved.end(), moved[k].begin(), moved[k].end());
-    for (const GO id : ids) made.owned.push_back(id >= 0 ? 1 : 0);
+    for (const GO id : new_ids) made.owned.push_back(id >= 0 ? 1 : 0);
   }
   const int width = Element{mesh.dim(), 2, mesh.element.shape}.num_nodes(), vertices = mesh.element.num_nodes();
   made.cells.resize(std::size_t(width) * mesh.num_cells());

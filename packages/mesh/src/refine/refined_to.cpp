@@ -58,13 +58,14 @@ std::vector<Halving> halving_by(const SizeTree<dim> &size, const Mesh &mesh, con
   const auto cells = to_host(mesh.cells);
   const auto coords = to_host(mesh.coords);
   std::vector<Halving> halving(mesh.num_owned_cells, Halving::none);
-  for (LO c = 0; c < mesh.num_owned_cells; ++c) {
-    if (settled[c]) continue;
+  const Kokkos::RangePolicy<Kokkos::DefaultHostExecutionSpace, LO> all(0, mesh.num_owned_cells);
+  Kokkos::parallel_for("rpc::mesh::sizes_of_cells", all, [&](const LO c) {
+    if (settled[c]) return;
     SimplexVertices<dim> vertex;
     for (int v = 0; v <= dim; ++v)
       for (int d = 0; d < dim; ++d) vertex[v][d] = coords(cells(c, v), d);
     halving[c] = halving_of(excess<dim>(size, vertex), dim);
-  }
+  });
   return halving;
 }
 
