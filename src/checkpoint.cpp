@@ -157,14 +157,14 @@ const mesh::GmshOptions *sized_mesh(const analysis::HistoryState &state)
   const auto *const gmsh = std::get_if<mesh::GmshOptions>(&state.mesh_options);
   return gmsh && gmsh->sizes ? gmsh : nullptr;
 }
-/// A field of cell sizes, how often the mesh by it was refined, and whether it is nested, as arrays of a file.
+/// A field of cell sizes, how often the mesh by it was refined, whether it is nested, and whether it is kept to simplices, as arrays of a file.
 std::vector<io::NamedArray> arrays_of(const mesh::GmshOptions &mesh)
 {
   const mesh::SizeField &sizes = *mesh.sizes;
   return {{"sizes_coords", sizes.coords},
           {"sizes_simplices", {sizes.simplices.begin(), sizes.simplices.end()}},
           {"sizes_size", sizes.size},
-          {"sizes_kind", {double(sizes.dim), double(mesh.refinements), double(mesh.nested)}}};
+          {"sizes_kind", {double(sizes.dim), double(mesh.refinements), double(mesh.nested), double(mesh.simplices)}}};
 }
 /// The mesh that a checkpoint is on: the deck's, unless the file has a field of cell sizes.
 mesh::MeshOptions mesh_of(const io::Checkpoint &file, const std::string &path, const Scene &scene, const Comm &comm)
@@ -173,20 +173,21 @@ mesh::MeshOptions mesh_of(const io::Checkpoint &file, const std::string &path, c
                     *const size = array_of(file, "sizes_size"), *const kind = array_of(file, "sizes_kind");
   if (!coords || !simplices || !size || !kind) return scene.mesh;
   std::shared_ptr<mesh::SizeField> sizes;
-  int form[3] = {}; // dimension, how often the mesh by the sizes was refined, whether it is nested
+  int form[4] = {}; // dimension, how often the mesh by the sizes was refined, whether it is nested, kept to simplices
   on_root(comm, ExitCode::bad_input, [&] { // which has the arrays' values
     RPC_REQUIRE(
-        kind->size() == 3 && (kind->front() == 2 || kind->front() == 3),
+        kind->size() == 4 && (kind->front() == 2 || kind->front() == 3),
         "restart: \"" << path
-                      << "\" is damaged or no checkpoint: how its adapted mesh was made is not 3 numbers of which the "
+                      << "\" is damaged or no checkpoint: how its adapted mesh was made is not 4 numbers of which the "
                          "first is the dimension. Take an older one, or start from the first step.");
     std::copy(kind->begin(), kind->end(), form);
     sizes = std::make_shared<mesh::SizeField>(
         mesh::SizeField{*coords, {simplices->begin(), simplices->end()}, *size, form[0]});
   });
-  Teuchos::broadcast(comm, 0, 3, form);
-  const auto options =
-      form[2] ? mesh::refined_to_sizes(scene.mesh, sizes) : mesh::with_sizes(scene.mesh, sizes, form[1]);
+  Teuchos::broadcast(comm, 0, 4, form);
+  std::optional<mesh::MeshOptions> options = mesh::with_sizes(scene.mesh, sizes, form[1]);
+  if (form[2]) options = mesh::refined_to_sizes(scene.mesh, sizes);
+  if (options) std::get<mesh::GmshOptions>(*options).simplices = form[3];
   RPC_REQUIRE(options && scene.adapt.adapts(),
               "restart: \"" << path
                             << "\" is on a mesh that was adapted, and the deck adapts none. Give it "

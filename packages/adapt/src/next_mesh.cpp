@@ -75,9 +75,11 @@ mesh::MeshOptions MeshPlanner::options_for(const Sizes &sizes, const mesh::Mesh 
   predicted_cells_ = sizes.predicted_cells;
   halved_ = halves_ && !nested && mesh.dim() == 3 && sizes.predicted_cells >= plan_rules.least_halved;
   auto options = *sized(task_.mesh, task_.adapt, sizes.field, halved_ ? 1 : 0);
+  auto &gmsh = std::get<mesh::GmshOptions>(options);
+  gmsh.simplices = mesh.element.shape == mesh::Shape::simplex; // all meshes of a run have cells of one shape
   if (nested) {
     if (sum_all(mesh.comm(), GO(base_ ? 1 : 0)) == 0) base_ = mesh::base_mesh(task_.mesh, mesh.comm());
-    std::get<mesh::GmshOptions>(options).base = base_;
+    gmsh.base = base_;
   }
   return options;
 }

@@ -249,6 +249,7 @@ MeshData made_by_gmsh(const std::string &where, const GmshOptions &options)
     check_sizes(where, *options.sizes);
     check_number_of_cells(where, *options.sizes, options.size_factor);
     request.sizes = *options.sizes;
+    request.simplices = options.simplices;
   }
   const int most_attempts = options.sizes ? 5 : 2;
   for (;; ++request.attempt) {

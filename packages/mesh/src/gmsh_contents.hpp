@@ -21,6 +21,7 @@ struct GmshRequest {
   int box_dim = 2;                        ///< of the box, 2 or 3
   std::array<double, 3> lower{}, upper{}; ///< of the box
   bool quadrilaterals = false;            ///< in a plane box; a .geo has its own kind
+  bool simplices = false;                 ///< by a field of sizes nothing is recombined to quadrilaterals
   double size_factor = 1;                 ///< of all cell sizes
   double size = 0;                        ///< of cells, of a file of shapes; 0: a tenth of the body
   int order = 2;

@@ -119,6 +119,29 @@ bool recombines()
   return !tags.empty();
 }
 
+/// Surfaces and volumes have the sizes of a field alone.
+/// @param algorithm  of surfaces, gmsh's number
+void leave_sizes_to_field(const double algorithm)
+{
+  for (const int dimension : {2, 3}) {
+    gmsh::vectorpair entities;
+    gmsh::model::getEntities(entities, dimension);
+    for (const auto &[dim, entity] : entities) {
+      gmsh::model::mesh::setSizeFromBoundary(dim, entity, 0);
+      if (dim == 2) gmsh::model::mesh::setAlgorithm(dim, entity, static_cast<int>(algorithm));
+    }
+  }
+}
+
+/// Nothing is recombined to quadrilaterals any more.
+void keep_triangles()
+{
+  gmsh::vectorpair surfaces;
+  gmsh::model::getEntities(surfaces, 2);
+  gmsh::model::mesh::removeConstraints(surfaces);
+  gmsh::option::setNumber("Mesh.RecombineAll", 0);
+}
+
 /// What belongs to a .geo's own cell sizes goes out of play, but for curvature where it asks for cells by it.
 void set_field_options(const GmshRequest &request)
 {
@@ -133,14 +156,7 @@ void set_field_options(const GmshRequest &request)
   constexpr double delaunay_in_space = 1;
   const double tie_breaker = 1e-13 * std::pow(10, request.attempt);
   gmsh::model::mesh::field::setAsBackgroundMesh(-1); // none
-  for (const int dimension : {2, 3}) {
-    gmsh::vectorpair entities;
-    gmsh::model::getEntities(entities, dimension);
-    for (const auto &[dim, entity] : entities) {
-      gmsh::model::mesh::setSizeFromBoundary(dim, entity, 0);
-      if (dim == 2) gmsh::model::mesh::setAlgorithm(dim, entity, static_cast<int>(on_surfaces));
-    }
-  }
+  leave_sizes_to_field(on_surfaces);
   const std::initializer_list<std::pair<const char *, double>> options = {
       {"MeshSizeFromPoints", 0},
       {"MeshSizeFromParametricPoints", 0},
@@ -155,7 +171,11 @@ void set_field_options(const GmshRequest &request)
       {"LcIntegrationPrecision", 1e-4}, // cells, per step along a curve: the default takes a thousand times the steps
       {"SubdivisionAlgorithm", 0}};
   for (const auto &[name, value] : options) gmsh::option::setNumber(std::string("Mesh.") + name, value);
-  if (request.quadrilaterals || (!request.file.empty() && recombines())) {
+  const bool by_file = !request.file.empty() && recombines();
+  if (by_file && request.simplices) {
+    keep_triangles();
+    leave_sizes_to_field(on_surfaces);
+  } else if (request.quadrilaterals || by_file) {
     gmsh::option::setNumber("Mesh.SubdivisionAlgorithm", 1); // or some triangles would be left
     gmsh::option::setNumber("Mesh.Smoothing", 1);            // or some quadrilaterals would be inverted
     if (request.quadrilaterals) gmsh::option::setNumber("Mesh.RecombineAll", 1);

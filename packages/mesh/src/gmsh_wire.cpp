@@ -46,8 +46,8 @@ void each_part(Sizes &sizes, Each &each)
 template <class Request, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Request>, GmshRequest>, int> = 0>
 void each_part(Request &r, Each &each)
 {
-  each(r.folder, r.file, r.box_dim, r.lower, r.upper, r.quadrilaterals, r.size_factor, r.size, r.order, r.attempt,
-       r.straight_where_bent, r.sizes, r.dimension_only, r.geometry, r.near_tags, r.near_coords);
+  each(r.folder, r.file, r.box_dim, r.lower, r.upper, r.quadrilaterals, r.simplices, r.size_factor, r.size, r.order,
+       r.attempt, r.straight_where_bent, r.sizes, r.dimension_only, r.geometry, r.near_tags, r.near_coords);
 }
 
 template <class Group, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Group>, GmshGroup>, int> = 0>

@@ -234,6 +234,16 @@ std::string ring(const std::string &more)
          more;
 }
 
+TEST(SizeField, RecombinesNothingWhereSimplicesAreAskedFor)
+{
+  const Sizes field = rings(0, -2, .01, 5, [](double, double) { return .3; });
+  const ScratchFile file("ring.geo", ring("Recombine Surface {1, 2};\n"));
+  GmshOptions options{file.path(), .1, 2};
+  EXPECT_EQ(made(options, field).element.name(), "Q2");
+  options.simplices = true;
+  EXPECT_EQ(made(options, field).element.name(), "P2");
+}
+
 TEST(SizeField, GeoKeepsCirclesNamesAndBlocks)
 {
   const Size size = [](const double x, const double y) { return std::min(.4, .02 + .3 * std::hypot(x, y + 2)); };

@@ -36,6 +36,7 @@ struct GmshOptions {
   std::optional<BoxOptions> box =
       std::nullopt; ///< no file then; if not `nested`, meshed by `sizes`, and its cells and `order` do not count
   std::shared_ptr<const SizeField> sizes = nullptr; ///< of cells, instead of those that a .geo asks for
+  bool simplices = false; ///< by `sizes` a .geo that recombines triangles to quadrilaterals keeps the triangles
   /// Where curved cells bend too far all cells are made straight; else gmsh straightens those cells alone, which can take ten times as long
   /// as the mesh.
   bool straight_where_bent = false;
@@ -72,7 +73,7 @@ int gmsh_dimension(const GmshOptions &options);
 /// "body". Nodes keep gmsh's order. A box has the block and sides of make_box().
 ///
 /// With `sizes`, a .geo's own cell sizes are out of play, but for an explicit Mesh.MeshSizeFromCurvature. Quadrilaterals
-/// come from triangles, by recombination and division. Equal options give equal meshes, bit by bit.
+/// come from triangles, by recombination and division, unless `simplices` are asked for. Equal options give equal meshes, bit by bit.
 /// @throws rpc::Error (bad_mesh) with file, group, cell or node concerned: gmsh's own complaint or end; no cells; cells of a plane mesh off the plane z = 0; cells of different orders or unsupported kinds, in two blocks,
 ///         degenerate, inverted or overlapping; a side with facets that belong to no cell or to two; nodes that no cell uses,
 ///         or two at one place; sizes that ask for too many cells (in space 2 million vertices); a field of sizes that are
