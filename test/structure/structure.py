@@ -101,7 +101,7 @@ NO_RULES = {
         packages/algebra/src/repeated_rows.cpp packages/algebra/src/several_vectors.cpp packages/contact/src/surface/facets.cpp
         packages/mesh/src/canonical_order.cpp packages/mesh/src/size_tree.cpp packages/solver/src/factor/low_rank_update.cpp""",
     "what input may be": """
-        packages/contact/src/contact_nodes.cpp packages/fem/src/hinges.cpp packages/io/src/deck.cpp
+        packages/contact/src/contact_nodes.cpp packages/fem/src/hinges.cpp packages/io/src/deck.cpp packages/mesh/src/gmsh_mesher.cpp
         packages/mesh/include/rpc/mesh/mesh_data.hpp packages/mesh/src/make_mesh.cpp packages/solver/src/multigrid/gathered_solver.cpp""",
     "what notes and results tell, and in how many digits": """
         packages/contact/src/between_nodes.cpp packages/contact/src/gap_search.cpp packages/io/src/error_bar.cpp src/notes.cpp

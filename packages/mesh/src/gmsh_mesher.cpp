@@ -14,6 +14,7 @@
 #include <functional>
 #include <gmsh.h>
 #include <initializer_list>
+#include <iomanip>
 #include <map>
 #include <new>
 #include <set>
@@ -74,11 +75,12 @@ bool mesh_curves(const double body, const double factor)
   return done;
 }
 
+constexpr std::size_t most_nodes = 2'000'000; // of order 1: larger meshes are for gmsh alone
+
 /// Meshes surfaces and volumes; a bound on the nodes inside them gives sizes that are absurd an end.
 void mesh_surfaces_and_volumes()
 {
-  constexpr std::size_t most_nodes = 2'000'000; // of order 1: larger meshes are for gmsh alone
-  std::size_t nodes = 0;                        // gmsh asks for the size at each, once
+  std::size_t nodes = 0; // gmsh asks for the size at each, once
   set_size_callback([&](int, int, double, double, double, const double own_size) {
     if (++nodes > most_nodes)
       throw "cell sizes are too small: surfaces and volumes would have more than " + std::to_string(most_nodes) +
@@ -333,6 +335,14 @@ void load(const GmshRequest &request, GmshContents &contents)
   }
   const bool shapes = format == MeshFormat::shapes;
   if (shapes) set_own_size(request);
+  if (const double nodes = shapes ? expected_nodes(request) : 0; nodes > static_cast<double>(most_nodes)) {
+    std::ostringstream text;
+    text << std::setprecision(3) << "cells of size " << request.size * request.size_factor
+         << " are too small for a body of size " << diameter() << ": there would be about " << nodes
+         << " nodes, and at most " << most_nodes << " are made. Is \"Size\" in the file's unit of length?";
+    contents.complaint = text.str();
+    return;
+  }
   const std::string absurdity = make_mesh(request, contents.dim);
   contents.complaint = first_error();
   contents.again = !contents.complaint.empty();

@@ -247,6 +247,24 @@ void set_own_size(const GmshRequest &request)
   for (const char *const bound : {"Mesh.MeshSizeMin", "Mesh.MeshSizeMax"}) gmsh::option::setNumber(bound, request.size);
 }
 
+double expected_nodes(const GmshRequest &request)
+{
+  if (!(request.size > 0) || extension_of(request.file) == ".stl") return 0;
+  const double h = request.size * request.size_factor;
+  const double nodes_of_size[] = {2 / (std::sqrt(3.) * h * h), std::sqrt(2.) / (h * h * h)}; // the densest lattices
+  double nodes = 0;
+  for (const int dim : {2, 3}) {
+    gmsh::vectorpair entities;
+    gmsh::model::getEntities(entities, dim);
+    for (const auto &[of_dim, tag] : entities) {
+      double size = 0;
+      gmsh::model::occ::getMass(of_dim, tag, size);
+      nodes += nodes_of_size[dim - 2] * size;
+    }
+  }
+  return nodes;
+}
+
 void take_shapes(GmshContents &contents)
 {
   for (const bool boundary : {true, false}) {

@@ -21,6 +21,10 @@ std::string why_no_cells(const GmshContents &contents);
 /// The sizes of cells that a file of shapes has none of.
 void set_own_size(const GmshRequest &request);
 
+/// About how many nodes a file of shapes would have at the size of cells that is asked for: what lattices of it have in its surfaces and
+/// volumes. 0: not known.
+double expected_nodes(const GmshRequest &request);
+
 /// The groups of a file of shapes, with their elements: its volumes are blocks, and all surfaces of the boundary are sides, by the names that
 /// the file gives them, else by their numbers, "surface 7". In the plane surfaces and curves.
 void take_shapes(GmshContents &contents);
