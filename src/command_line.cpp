@@ -244,7 +244,8 @@ Usage: rpc --new=NAME
                        looked up as given, then among the decks that come with rpc
   --new                lists commented decks to start from
   --new=NAME           writes one of them, NAME.xml, and never over a file that is there
-  --mesh-info=FILE     tells blocks, sides, sizes and quality of a geometry or mesh
+  --mesh-info=FILE     tells blocks, sides, sizes and quality of a geometry or mesh, and draws it
+                       in the output folder
   --make-surface=FILE  writes a synthetic rough surface, .npy, .csv or .asc, as --set says, e.g.
                        --set="RMS Slope=0.1" --set="Points=256"; see doc/input/surfaces.md
   --output=DIR         folder for the results, made if missing; default: the current one

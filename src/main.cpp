@@ -218,7 +218,7 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
     return ExitCode::converged;
   }
   if (!line.mesh.empty()) {
-    rpc::on_root(*comm, ExitCode::bad_mesh, [&] { out << rpc::mesh_info(line.mesh); });
+    rpc::on_root(*comm, ExitCode::bad_mesh, [&] { out << rpc::mesh_info(line.mesh, line.output); });
     return ExitCode::converged;
   }
   RPC_REQUIRE(!line.input.empty(),

@@ -2,6 +2,8 @@
 #include "mesh_info.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/io/atomic_file.hpp"
+#include "rpc/io/mesh_picture.hpp"
 #include "rpc/mesh/gmsh.hpp"
 #include "rpc/mesh/mesh_summary.hpp"
 
@@ -61,7 +63,7 @@ double size_of(const PartSummary &body)
 
 } // namespace
 
-std::string mesh_info(const std::string &file)
+std::string mesh_info(const std::string &file, const std::string &folder)
 {
   std::error_code ignored;
   RPC_REQUIRE(std::filesystem::exists(file, ignored),
@@ -96,10 +98,19 @@ std::string mesh_info(const std::string &file)
     return std::any_of(all.begin(), all.end(),
                        [&](const PartSummary &each) { return side.name == surface + " " + std::to_string(each.tag); });
   };
+  const auto drawn = [&](const std::string &name) {
+    for (std::size_t k = 0; k < summary.sides.size(); ++k)
+      if (summary.sides[k].name == name) return "; drawn " + io::colour_of_side(k);
+    return std::string();
+  };
   for (const PartSummary &side : summary.sides)
-    if (!named_by_number(side)) print_line(out, "side", quoted(side.name) + ": " + facets_text(side, dim, size));
-  for (const PartSummary &each : summary.surfaces)
-    print_line(out, surface, std::to_string(each.tag) + ", " + each.name + ": " + facets_text(each, dim, size));
+    if (!named_by_number(side))
+      print_line(out, "side", quoted(side.name) + ": " + facets_text(side, dim, size) + drawn(side.name));
+  for (const PartSummary &each : summary.surfaces) {
+    const std::string number = std::to_string(each.tag);
+    print_line(out, surface,
+               number + ", " + each.name + ": " + facets_text(each, dim, size) + drawn(surface + " " + number));
+  }
   for (const mesh::PointData &points : mesh.points)
     print_line(out, "points",
                quoted(points.name) + ": " + std::to_string(points.node.size()) +
@@ -114,6 +125,11 @@ std::string mesh_info(const std::string &file)
           << "; 1 is a regular cell, 0 a flat one";
   print_line(out, "quality", quality.str());
   for (const std::string &note : mesh.notes) print_line(out, "note", note);
+  const std::filesystem::path picture =
+      std::filesystem::path(folder) / (std::filesystem::path(file).stem().string() + ".mesh.png");
+  io::require_writable_folder(folder);
+  io::write_text(picture.string(), io::mesh_picture(mesh));
+  print_line(out, "picture", picture.lexically_normal().string());
   return out.str();
 }
 

@@ -3,9 +3,12 @@
 
 import json
 import os
+import re
 import shutil
+import struct
 import subprocess
 import unittest
+import zlib
 
 from rpc_run import SOURCE, RpcTestCase
 
@@ -42,6 +45,21 @@ def stl_of_box(x, y, z):
         for triangle in ((a, b, c), (a, c, d)):
             text += "facet normal 0 0 0\nouter loop\n" + "".join("vertex %g %g %g\n" % corner[k] for k in triangle) + "endloop\nendfacet\n"
     return text + "endsolid box\n"
+
+
+def read_png(data):
+    """(width, height, pixels, palette) of a picture with a palette and without filters."""
+    chunks, at = {}, 8
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    while at < len(data):
+        size, kind = struct.unpack(">I4s", data[at:at + 8])
+        chunk = data[at + 8:at + 8 + size]
+        assert zlib.crc32(kind + chunk) == struct.unpack(">I", data[at + 8 + size:at + 12 + size])[0], kind
+        chunks[kind] = chunk
+        at += 12 + size
+    width, height = struct.unpack(">II", chunks[b"IHDR"][:8])
+    rows = zlib.decompress(chunks[b"IDAT"])  # which checks its sum
+    return width, height, b"".join(rows[(width + 1) * y + 1:(width + 1) * (y + 1)] for y in range(height)), chunks[b"PLTE"]
 
 
 class Formats(RpcTestCase):
@@ -90,6 +108,24 @@ class Formats(RpcTestCase):
         info = self.rpc("--mesh-info=two_squares.exo").stdout
         self.assertRegex(info, "1 entries of side set [0-9]+ are faces of shells, which bound no body: they are left out")
         self.assertIn('side        "right": 1 facet', info)
+
+    def test_mesh_info_draws_a_mesh(self):
+        for mesh, views, drawn in (("sector_22.msh", 1, (0.4, 1)), ("octant_22.msh", 2, (0.2, 0.9))):
+            shutil.copy(DATA / mesh, self.folder)
+            info = self.rpc(f"--mesh-info={mesh}", "--output=pictures").stdout
+            picture = self.folder / "pictures" / mesh.replace(".msh", ".mesh.png")
+            self.assertIn(f"picture     pictures/{picture.name}\n", info)
+            colours = re.findall(r"^  side .*; drawn (\w+)$", info, re.MULTILINE)
+            self.assertEqual(colours, ["blue", "orange", "green", "red"][:len(colours)])
+            width, height, pixels, palette = read_png(picture.read_bytes())
+            self.assertEqual(len(pixels), width * height)
+            self.assertLessEqual(abs(width - views * height), 0.3 * width)
+            body = sum(1 for pixel in pixels if pixel) / len(pixels)
+            self.assertTrue(drawn[0] < body < drawn[1], body)
+            shades = 16  # the first colours of the palette after that of the background are those of sides
+            seen = {(pixel - 1) // shades for pixel in set(pixels) if pixel}
+            self.assertLessEqual(set(range(len(colours))), seen, f"{mesh}: a side is not to be seen")
+            self.assertEqual(palette[:3], b"\xff\xff\xff")
 
     def test_what_is_mended_changes_nothing(self):
         text = (DATA / "square_41.msh").read_text()

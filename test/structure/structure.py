@@ -87,7 +87,7 @@ NAME_OF_NUMBER = re.compile(r"(\w+)(?:\[\w+\])* =")
 NO_RULES = {
     "numbers of formats and protocols: bytes, tags, types of cells": """
         packages/core/src/exchange.cpp packages/core/src/halo.cpp packages/core/src/message.cpp packages/core/src/units.cpp
-        packages/io/src/checkpoint.cpp packages/mesh/src/gmsh_wire.cpp packages/mesh/src/gmsh_wire.hpp
+        packages/io/src/checkpoint.cpp packages/io/src/mesh_picture.cpp packages/mesh/src/gmsh_wire.cpp packages/mesh/src/gmsh_wire.hpp
         packages/mesh/src/gmsh_size_callback.hpp packages/solver/src/factor/mumps_factor.cpp
         src/checkpoint.cpp src/output/paths.cpp""",
     "numbers of shapes": """
