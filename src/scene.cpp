@@ -26,6 +26,9 @@ Teuchos::ParameterList valid_output_parameters()
              "Displacement, stresses, contact fields: `joined` writes <deck>.e (`true` means the same), `split` a file "
              "a rank of its own "
              "cells, <deck>.e.N.k for rank k of N, as `epu` and ParaView take them, `none` nothing (`false` too).");
+  valid.set("Cell Stresses", false,
+            "Write to the Exodus file, too, the mean of each cell's own stress, `cell_stress_xx`, ...: where blocks "
+            "meet, nodes have a mean of both sides.");
   valid.set("CSV", true, "Write <deck>.contact.csv: the contact nodes along the surface.");
   valid.set("JSON", true, "Write <deck>.json: the summary.");
   valid.set("Timers", false, "Print the timer tree at the end.");
@@ -179,6 +182,10 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   const auto exodus = output.get<std::string>("Exodus");
   scene.output = {exodus != "none", output.get<bool>("CSV"), output.get<bool>("JSON"),
                   exodus == "split" ? io::ExodusFiles::split : io::ExodusFiles::joined, output.get<bool>("Timers")};
+  scene.output.cell_stresses = output.get<bool>("Cell Stresses");
+  RPC_REQUIRE(!scene.output.cell_stresses || scene.output.exodus,
+              "deck: \"Output->Cell Stresses\" goes into the Exodus file, and \"Output->Exodus\" = none writes none. "
+              "Leave one of them out.");
   scene.output.points = points_options(output.sublist("Points"), dim);
   require_fit_for_periodic(scene);
   adapt::require_adaptable(scene);

@@ -18,7 +18,8 @@ struct OutputOptions {
   bool exodus = true, csv = true, json = true;
   io::ExodusFiles exodus_files = io::ExodusFiles::joined;
   bool timers = false;
-  bool verbose = false; ///< of the command line: the console tells more
+  bool cell_stresses = false; ///< in the Exodus file
+  bool verbose = false;       ///< of the command line: the console tells more
   std::vector<ResultPoints> points = {};
 };
 

@@ -90,14 +90,36 @@ std::vector<io::NodalField> nodal_fields(const Scene &scene, const analysis::Sol
   return fields;
 }
 
-/// What cells have: the estimated error of each in the energy norm, where there is an estimate.
+/// Names of what cells have.
+std::vector<std::string> cell_field_names(const Scene &scene, const fem::Discretization &d)
+{
+  std::vector<std::string> names;
+  if (scene.adapt.estimate) names.emplace_back(error_field);
+  if (scene.output.cell_stresses)
+    for (const std::string &name : fem::stress_names(d)) names.push_back("cell_" + name);
+  return names;
+}
+
+/// What cells have: the estimated error of each in the energy norm, where there is an estimate, and mean stresses, where they are asked for.
 std::vector<io::CellField> cell_fields(const Scene &scene, const analysis::Solution &s)
 {
-  if (!scene.adapt.estimate) return {};
-  const auto squared = to_host(s.squared_errors);
-  HostView<double *> error("rpc::output::error", squared.extent(0));
-  for (std::size_t c = 0; c < squared.extent(0); ++c) error(c) = std::sqrt(std::max(0., squared(c)));
-  return {{error_field, error}};
+  std::vector<HostView<double *>> values;
+  if (scene.adapt.estimate) {
+    const auto squared = to_host(s.squared_errors);
+    values.emplace_back("rpc::output::error", squared.extent(0));
+    for (std::size_t c = 0; c < squared.extent(0); ++c) values.back()(c) = std::sqrt(std::max(0., squared(c)));
+  }
+  if (scene.output.cell_stresses) {
+    const auto stress = to_host(fem::mean_stresses(s.discretization, scene.model.materials, *s.u));
+    for (std::size_t k = 0; k < stress.extent(1); ++k) {
+      values.emplace_back("rpc::output::cell_stress", stress.extent(0));
+      for (std::size_t c = 0; c < stress.extent(0); ++c) values.back()(c) = stress(c, k);
+    }
+  }
+  std::vector<io::CellField> fields;
+  for (const std::string &name : cell_field_names(scene, s.discretization))
+    fields.push_back({name, values[fields.size()]});
+  return fields;
 }
 
 /// The units of the file's numbers as pictures read them.
@@ -178,11 +200,9 @@ void end_parts(const FilmOnDisk &film, const int parts, const double last)
 std::unique_ptr<io::ExodusFile> Film::opened(const Scene &scene, const analysis::Solution &s, const std::string &path,
                                              const std::vector<std::string> &fields) const
 {
-  std::vector<std::string> cell_names;
-  if (scene.adapt.estimate) cell_names.emplace_back(error_field);
-  return std::make_unique<io::ExodusFile>(path, scene.name, *on_file_.mesh, fields,
-                                          unit_records(scene.model.units, s.discretization.per_length()),
-                                          std::vector<io::NamedArray>(), scene.output.exodus_files, cell_names);
+  return std::make_unique<io::ExodusFile>(
+      path, scene.name, *on_file_.mesh, fields, unit_records(scene.model.units, s.discretization.per_length()),
+      std::vector<io::NamedArray>(), scene.output.exodus_files, cell_field_names(scene, s.discretization));
 }
 
 /// Takes over the parts that a run before has left, as far as it is gone on from, and removes the others. Opens the last one if it is of

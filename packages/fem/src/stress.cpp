@@ -104,7 +104,58 @@ struct Recovery {
   }
 };
 
+/// Means of a cell's own stress.
+template <int Dim, int Nodes, bool Axisymmetric>
+struct MeanStress {
+  using Body = ElasticCells<Dim, Nodes, Axisymmetric>;
+  static constexpr int components = Components<Dim>::size;
+
+  Body body;                   //                          in
+  ReadVector u;                // (overlap dofs)    [m]    in
+  DeviceView<double **> value; // (owned cells; columns) [Pa] out
+
+  KOKKOS_FUNCTION void operator()(const LO cell) const
+  {
+    const double lambda = body.lambda(cell), mu = body.mu(cell);
+    double s[components] = {}, size = 0;
+    body.at_points(cell, [&](int, const double volume, const typename Body::Gradients &dN,
+                             const typename Body::Dilatation &of_dilatation) {
+      typename Body::Tensor grad;
+      body.displacement_gradient(u, cell, dN, grad);
+      const double dilatation = body.divergence(u, cell, of_dilatation);
+      for (int m = 0; m < components; ++m) {
+        const int i = Components<Dim>::row(m), j = Components<Dim>::col(m);
+        if (i >= Dim && body.plane_stress) continue;
+        const bool strained = i < Body::columns; // across the plane the strain is 0
+        s[m] += volume * ((strained ? mu * (grad[i][j] + grad[j][i]) : 0) + (i == j ? lambda * dilatation : 0));
+      }
+      size += volume;
+    });
+    for (int m = 0; m < components; ++m) s[m] /= size;
+    const int columns = static_cast<int>(value.extent(1)) - 1; // in plane stress none across the plane
+    for (int m = 0; m < columns; ++m) value(cell, m) = s[m];
+    value(cell, columns) = EvaluatePatches<Dim, Nodes, Axisymmetric>::von_mises(s);
+  }
+};
+
+template <int Dim, int Nodes, bool Axisymmetric>
+void find_means(const Discretization &d, const ElasticCells<Dim, Nodes, Axisymmetric> &body, const Vector &u_overlap,
+                const DeviceView<double **> &value)
+{
+  const MeanStress<Dim, Nodes, Axisymmetric> mean{body, device_read(u_overlap), value};
+  Kokkos::parallel_for("rpc::fem::mean_stresses", device_range(d.mesh->num_owned_cells), mean);
+  Kokkos::fence();
+}
+
 } // namespace
+
+DeviceView<double **> mean_stresses(const Discretization &d, const Materials &materials, const Vector &u)
+{
+  const DeviceView<double **> value("rpc::fem::mean_stresses", d.mesh->num_owned_cells, stress_names(d).size());
+  const auto u_overlap = on_overlap(d, u);
+  with_elastic_cells(d, materials, [&](const auto &body) { find_means(d, body, *u_overlap, value); });
+  return value;
+}
 
 std::vector<std::string> stress_names(const Discretization &d)
 {

@@ -288,6 +288,9 @@ TEST(NodalStresses, OfOneBlockDoNotReachIntoAnother)
     const auto stress = fem::RecoveredStress(d, materials, *u).at_nodes();
     const auto values = stress->getLocalViewHost(Tpetra::Access::ReadOnly);
     const double left = 0.01 * (steel.lambda() + 2 * steel.mu()), right = 0.01 * (rubber.lambda() + 2 * rubber.mu());
+    const auto of_cell = to_host(fem::mean_stresses(d, materials, *u));
+    for (LO cell = 0; cell < mesh->num_owned_cells; ++cell)
+      EXPECT_NEAR(of_cell(cell, 0), block(cell) == 0 ? left : right, 1e-11 * left);
     for (LO n = 0; n < mesh->num_owned_nodes(); ++n) {
       const double x = coords(n, 0) - border;
       if (std::abs(x) > 1e-9) {
@@ -297,6 +300,47 @@ TEST(NodalStresses, OfOneBlockDoNotReachIntoAnother)
         EXPECT_GT(values(n, 0), right + 0.1 * (left - right));
       }
     }
+  }
+}
+
+TEST(CellStresses, LinearDisplacementGivesHookesStressInEveryCell)
+{
+  for (const auto &element : recoverable()) {
+    SCOPED_TRACE(text_of(element));
+    const auto d = bulged_body(element, world());
+    const auto u = interpolate(d, [&](const Point &x) { return linear(x, element.dim); });
+    const auto values = to_host(fem::mean_stresses(d, steel, *u));
+    const auto exact = hookes_law(element.dim);
+    ASSERT_EQ(values.extent(1), exact.size());
+    for (LO cell = 0; cell < d.mesh->num_owned_cells; ++cell)
+      for (std::size_t k = 0; k < exact.size(); ++k) EXPECT_NEAR(values(cell, k), exact[k], 1e-12 * exact.back());
+  }
+}
+
+/// A bar that is drawn along x in plane stress; a cylinder that widens evenly.
+TEST(CellStresses, KnowThePlaneTheyAreIn)
+{
+  constexpr double strain = 0.01;
+  const double nu = steel.poissons_ratio, E = steel.youngs_modulus;
+  for (const auto &element : recoverable()) {
+    if (element.dim == 3) continue;
+    SCOPED_TRACE(text_of(element));
+    auto box = small_box(element);
+    for (double *const x : {&box.lower[0], &box.upper[0]}) *x += 2; // beside the axis
+    const auto mesh = std::make_shared<mesh::Mesh>(mesh::make_box(box, world()));
+    const auto sheet = fem::discretize(mesh, fem::Kinematics::plane_stress);
+    const auto drawn = interpolate(sheet, [&](const Point &x) { return Point{strain * x[0], -nu * strain * x[1], 0}; });
+    const auto tension = to_host(fem::mean_stresses(sheet, steel, *drawn));
+    const auto disc = fem::discretize(mesh, fem::Kinematics::axisymmetric);
+    const auto wider = interpolate(disc, [&](const Point &x) { return Point{strain * x[0], 0, 0}; });
+    const auto hoop = to_host(fem::mean_stresses(disc, steel, *wider));
+    const double radial = 2 * strain * (steel.lambda() + steel.mu()), along = 2 * strain * steel.lambda();
+    for (LO cell = 0; cell < mesh->num_owned_cells; ++cell)
+      for (int k = 0; k < 5; ++k) {
+        if (k < 4) EXPECT_NEAR(tension(cell, k), k == 0 || k == 3 ? E * strain : 0, 1e-12 * E); // xx, yy, xy; von Mises
+        const double exact[] = {radial, along, 0, radial, radial - along}; // xx, yy, xy, theta; von Mises
+        EXPECT_NEAR(hoop(cell, k), exact[k], 1e-12 * E);
+      }
   }
 }
 

@@ -39,6 +39,11 @@ private:
   RCP<const MultiVector> polynomials_; // (overlap nodes; columns of PatchTable)
 };
 
+/// Means over each cell of the stress of u itself, with the dilatation as its stiffness has it (2.6), and the von Mises stress of
+/// the mean: where blocks meet each cell has its own.
+/// @param u  (owned dofs) [m]; collective   @return (owned cells; columns as RecoveredStress::at_nodes) [Pa]
+DeviceView<double **> mean_stresses(const Discretization &d, const Materials &materials, const Vector &u);
+
 /// Names of the columns of RecoveredStress::at_nodes: stress_xx, ..., von_mises.
 std::vector<std::string> stress_names(const Discretization &d);
 
