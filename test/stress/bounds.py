@@ -7,7 +7,7 @@ Scene K comes from the seed and K alone: a rectangle, a parallelogram or an L of
 materials, in plane strain or stress, held at one or two sides or pressed down by one, with smooth loads on sides and maybe a force per volume, on a
 foundation with a finite or an infinite yield stress and an even or a tilted gap. The reference is the same scene on cells of P2 half as
 long that are then adapted: J(u) is its upper bound less half of the square of its estimated error. A scene fails where the lower bound lies above the upper one of the
-reference, or a run fails. Told are the effectivities sqrt((J(u^) - lower) / (J(u^) - J(u))): the smallest, the median, the largest, and how many
+reference, or a run fails; one whose bound the program refuses, and says why, is told as refused. Told are the effectivities sqrt((J(u^) - lower) / (J(u^) - J(u))): the smallest, the median, the largest, and how many
 exceed LARGE. With --laws=1 foundations harden, lie on springs, rub with Tresca's friction, or keep the dents of a first step, whose meshes are nested
 triangles: then the reference is the last mesh of the same run. In space the bodies are blocks, sheared or distorted or with a corner cut out, of tetrahedra of order 1 or 2 or
 hexahedra of order 1 (--element), and no laws have dents; the reference has cells of P2 half as long, of P2 a third: its interval must meet that of the scene,
@@ -43,6 +43,7 @@ MOST_DOFS = 30000  # of references
 TARGET = 0.003
 STEPS_TARGET = 0.02  # of scenes with dents, whose meshes are nested
 REFUSED = 5  # exit code: the scene has no solution
+NOT_COVERED = '"Adapt->Error Bound" = guaranteed covers'  # what a refusal with exit code 2 says
 ROUNDING = 1e-9
 UNSTRAINED = 1e-25  # energies of scenes are 1e-8 and more
 KEPT = 0.03  # of the squared error: what a reference may be off
@@ -236,6 +237,7 @@ class Outcome:
     first: float = math.nan  # without steps of conjugate gradients
     complaint: str = ""
     refused: bool = False
+    not_covered: str = ""  # why the bound is refused
     exact: bool = False  # the mesh represents the solution
     goals: typing.List[float] = dataclasses.field(default_factory=list)  # widths of intervals over the numbers
     untold: int = 0  # goals without an interval
@@ -289,6 +291,9 @@ def judge_runs(options, number, element, lists, runs):
             result, summary = run(options, folder, output, *more)
             if result.returncode == REFUSED:
                 outcome.refused = True
+                return outcome
+            if result.returncode == 2 and output == "out" and NOT_COVERED in result.stderr:
+                outcome.not_covered = result.stderr.strip()
                 return outcome
             if summary and summary["energy_norm_squared"] < UNSTRAINED:  # moved as a whole, and there is no bound
                 outcome.exact = True
@@ -409,11 +414,13 @@ def main():
     for o in outcomes:
         if o.complaint:
             print(f"FAILED {o.number} ({o.element}): {o.complaint}")
+        elif o.not_covered:
+            print(f"  {o.number} ({o.element}): refused: {o.not_covered}")
         elif (o.effectivity > large or o.effectivity < 1):
             print(f"  {o.number} ({o.element}): effectivity {o.effectivity:.3f} after {o.first:.2f}, the reference may be off by {o.uncertain:.3f}")
-    known = [o for o in outcomes if not (o.complaint or o.refused or o.exact)]
+    known = [o for o in outcomes if not (o.complaint or o.refused or o.not_covered or o.exact)]
     below = [o for o in known if o.effectivity < 1 - o.uncertain]
-    print(f"{len(outcomes)} scenes, seed {options.seed}: {sum(bool(o.complaint) for o in outcomes)} failed, {sum(o.refused for o in outcomes)} without a solution, {sum(o.exact for o in outcomes)} exact")
+    print(f"{len(outcomes)} scenes, seed {options.seed}: {sum(bool(o.complaint) for o in outcomes)} failed, {sum(o.refused for o in outcomes)} without a solution, {sum(bool(o.not_covered) for o in outcomes)} refused, {sum(o.exact for o in outcomes)} exact")
     for element in ["P1", "P2", "Q1", "Q2", None]:
         of = sorted(o.effectivity for o in known if element in (None, o.element))
         if of:
