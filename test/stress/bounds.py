@@ -63,8 +63,10 @@ def mesh_of(rng, element, place, nx, ny, cut_x, cut_y, halves):
     """A Grid: an L lacks its upper right corner, two blocks lie beside each other."""
     distort = None
     if element[0] == "P" and rng.random() < 0.6:
-        (x0, y0), (x1, y1) = place(0, 0), place(1 / nx, 1 / ny)
-        size = 0.25 * min(abs(x1 - x0), abs(y1 - y0))
+        (x0, y0), (x1, y1), (x2, y2), (x3, y3) = place(0, 0), place(1 / nx, 0), place(1 / nx, 1 / ny), place(0, 1 / ny)
+        altitude = abs((x1 - x0) * (y3 - y0) - (x3 - x0) * (y1 - y0)) / max(math.hypot(x2 - x0, y2 - y0), math.hypot(x3 - x1, y3 - y1))
+        # No triangle turns over whose vertices move by less than half of its least altitude.
+        size = min(0.25 * min(abs(x2 - x0), abs(y2 - y0)), altitude / math.sqrt(8))
         moves = {}
         distort = lambda i, j: moves.setdefault((i, j), (rng.uniform(-size, size), rng.uniform(-size, size)))
     # No vertex on the line between two blocks may move, nor the edge of the corner that is cut out.
