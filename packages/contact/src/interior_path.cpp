@@ -200,39 +200,13 @@ void InteriorPath::correct(const Vector &u, const Vector &d, Vector &F)
   const SmoothedPoints s = functional_.points();
   const auto change = changes_along(s, at_, aim_, u, d);
   const double t = longest_of_all(*u.getMap()->getComm(), s, change, at_);
-  aim_mu_ = aimed_mu(mu_, t);
-  const double mu = aim_mu_;
+  const double mu = aimed_mu(mu_, t);
   const DeviceView<InteriorTarget *> next("rpc::contact::interior_target", s.size());
   Kokkos::parallel_for(
       "rpc::contact::interior_target", device_range(s.size()),
       KOKKOS_LAMBDA(const LO i) { next(i) = corrected_target(change(i), mu, t, s.points.law(i)); });
   Kokkos::fence();
   add_force_of(next, aim_, s, at_, F);
-  aim_ = next;
-}
-
-double InteriorPath::longest_step(const Vector &u, const Vector &d) const
-{
-  const SmoothedPoints &s = functional_.points();
-  return longest_of_all(*u.getMap()->getComm(), s, changes_along(s, at_, aim_, u, d), at_);
-}
-
-void InteriorPath::center(const Vector &u, const Vector &d, Vector &F)
-{
-  const SmoothedPoints s = functional_.points();
-  const auto change = changes_along(s, at_, aim_, u, d);
-  const double t = std::min(1., longest_of_all(*u.getMap()->getComm(), s, change, at_) + interior_rules.longer_by),
-               mu = aim_mu_, range = interior_rules.range;
-  const auto at = at_;
-  const auto aim = aim_;
-  const DeviceView<InteriorTarget *> next("rpc::contact::interior_target", s.size());
-  Kokkos::parallel_for(
-      "rpc::contact::interior_center", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
-        if (!s.points.fixed(i)) next(i) = centered_target(at(i), change(i), aim(i), t, mu, range, s.points.law(i));
-      });
-  Kokkos::fence();
-  add_force_of(next, aim, s, at, F);
-  aim_before_ = aim;
   aim_ = next;
 }
 

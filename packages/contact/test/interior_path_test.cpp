@@ -125,26 +125,6 @@ TEST(InteriorPath, ExcessIsLinearInTheTarget)
     EXPECT_NEAR(linear_excess(x, 0.3, next, f), linear_excess(x, 0.3, target, f) + excess_of(more, x, f), 1e-14);
 }
 
-TEST(InteriorPath, ProductsFarFromTheirMeanAreCentred)
-{
-  const double mu = 0.2, part = 0.5;
-  const InteriorTarget target{0.7, 0.6};
-  const auto centered = [&](const InteriorPoint &x, const InteriorPoint &change, const Foundation &f) {
-    return centered_target(x, change, target, part, mu, 10, f);
-  };
-  const Foundation rigid{inf, 0, 0}, plastic{3, 0, 0};
-  // p s = 1 * 0.5 after the step: between mu/10 and 10 mu
-  EXPECT_EQ(centered({2, 1, 0}, {-2, -1, 0}, rigid).opening, target.opening);
-  EXPECT_EQ(centered({2, 1, 0}, {-2, -1, 0}, rigid).dent, target.dent);
-  EXPECT_DOUBLE_EQ(centered({2, 1, 0}, {-3.99, 0, 0}, rigid).opening, target.opening + 0.02 - 0.005); // p = 0.005
-  EXPECT_DOUBLE_EQ(centered({2, 1, 0}, {-6, 0, 0}, rigid).opening, target.opening + 0.02 + 1);        // p = -1
-  EXPECT_DOUBLE_EQ(centered({2, 1, 0}, {2, 0, 0}, rigid).opening, target.opening + 2 - 3);            // p = 3
-  EXPECT_DOUBLE_EQ(centered({2, 9, 0}, {2, 0, 0}, rigid).opening, target.opening - 2);                // at most 10 mu
-  // q = 3 - p = 0.5, d = 0.02 after the step
-  EXPECT_DOUBLE_EQ(centered({2, 1, 0.01}, {1, 0, 0.02}, plastic).dent, target.dent + 0.02 - 0.01);
-  EXPECT_DOUBLE_EQ(centered({2, 1, 0.01}, {1, 0, 0.02}, rigid).dent, target.dent);
-}
-
 TEST(InteriorPath, StepsEndAtTheNearestCorner)
 {
   const Foundation plastic{3, 0, 0}, hardens{3, 9, 0};

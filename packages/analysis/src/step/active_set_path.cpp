@@ -42,7 +42,7 @@ ActiveSetLoop::Status ActiveSetLoop::step_on_path(MinimizationSteps &steps)
   return status == Status::goes_on ? steps.unless_last(status) : status;
 }
 
-/// The direction of a step of the path: predictor, and what it lacks of the correctors.             (5.18) to (5.19a)
+/// The direction of a step of the path: predictor, and what it lacks of the correctors.              (5.18), (5.19)
 /// @return whether it can be used
 bool ActiveSetLoop::solve_interior(solver::NewtonContext &context, const Vector &u, Vector &direction)
 {
@@ -52,38 +52,21 @@ bool ActiveSetLoop::solve_interior(solver::NewtonContext &context, const Vector 
     energy = solved.energy;
     return !solved.broken && !solved.interrupted && std::isfinite(context.direction_norm);
   };
-  // Brings d to -H^-1 F, by a solve for what it lacks; false where that fails.
-  const auto improve = [&](const Vector &F, Vector &d) {
-    Vector lacking(u.getMap());
-    iterate_.apply_hessian(d, lacking);
-    lacking.update(1., F, 1.);
-    const double wanted = path_rules.forcing * F.norm2(), missing = lacking.norm2();
-    if (missing <= wanted) return true;
-    const int iterations = context.linear_iterations;
-    Vector correction(u.getMap());
-    if (!solve(lacking, correction, wanted / missing)) return false;
-    context.linear_iterations += iterations;
-    d.update(-1., correction, 1.);
-    return true;
-  };
   Vector F(u.getMap());
   interior_->linearize(u, F);
   if (!solve(F, direction, path_rules.forcing)) return false;
   direction.scale(-1.);
   interior_->correct(u, direction, F);
-  if (!improve(F, direction)) return false;
-  double t = interior_->longest_step(u, direction);
-  for (int times = 0; times < path_rules.most_centerings && t < path_rules.long_enough; ++times) {
-    interior_->center(u, direction, F);
-    Vector centered(direction, Teuchos::Copy);
-    const double longer = improve(F, centered) ? interior_->longest_step(u, centered) : 0;
-    if (longer > t)
-      direction.assign(centered);
-    else
-      interior_->take_back();
-    if (longer < t + path_rules.least_gain) break;
-    t = longer;
-  }
+  Vector lacking(u.getMap()); // by a solve for what the predictor lacks
+  iterate_.apply_hessian(direction, lacking);
+  lacking.update(1., F, 1.);
+  const double wanted = path_rules.forcing * F.norm2(), missing = lacking.norm2();
+  if (missing <= wanted) return true;
+  const int iterations = context.linear_iterations;
+  Vector correction(u.getMap());
+  if (!solve(lacking, correction, wanted / missing)) return false;
+  context.linear_iterations += iterations;
+  direction.update(-1., correction, 1.);
   return true;
 }
 

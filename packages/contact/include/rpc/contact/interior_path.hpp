@@ -11,8 +11,7 @@ namespace rpc::contact
 /// An interior-point method for the contact law: points and their pressures follow the rounded law (5.15) while mu falls to 0. Its
 /// steps are as many on thin bodies as on others, for no point changes its state at once.  doc/theory.md (5.15) to (5.20)
 ///
-/// A step has two solves with one matrix (Mehrotra): that of linearize() for mu = 0; correct() takes from it the mu that can be reached and the products that the linear equations leave out; then d for these. Where
-/// the step along d is short, center() corrects it further (Gondzio). advance() takes as much of it as keeps all points inside.
+/// A step has two solves with one matrix (Mehrotra): that of linearize() for mu = 0; correct() takes from it the mu that can be reached and the products that the linear equations leave out; then d for these. advance() takes as much of it as keeps all points inside.
 /// All members are collective.
 class InteriorPath
 {
@@ -31,12 +30,6 @@ public:
   /// Corrector: targets for the mu that the predictor step `d` reaches, less the products that it leaves out.      (5.19)
   /// @param F  gradient() for the targets before; then for the new ones
   void correct(const Vector &u, const Vector &d, Vector &F);
-  /// The part of a displacement, at most 1, with which all points stay inside.                                    (5.19)
-  double longest_step(const Vector &u, const Vector &d) const;
-  /// Centred targets, which allow a longer step along `d`. F as in correct().                                     (5.19a)
-  void center(const Vector &u, const Vector &d, Vector &F);
-  /// The targets become those before center().
-  void take_back() { aim_ = aim_before_; }
   /// Takes a step of the points along a displacement, as long as they stay inside, at most 1. @return its length    (5.19)
   double advance(const Vector &u, const Vector &d);
 
@@ -53,13 +46,11 @@ private:
   const SmoothedFunctional &functional_;
   RCP<UpdatedOperator> hessian_;
   DeviceView<InteriorPoint *> at_;   // (points)
-  DeviceView<InteriorTarget *> aim_, // (points) of the next step
-      aim_before_;                   // and before it was centred
+  DeviceView<InteriorTarget *> aim_; // (points) of the next step
   DeviceView<State *> state_;        // (points) that they tend to
   double pressure_ = 0;              // that points start with [Pa]
   double length_ = 0;                // size of displacements [m]
   double mu_ = 0;                    // mean of p s and q d [J/m^2]
-  double aim_mu_ = 0;                // of the next step
   double gap_ = 1;
   bool settled_ = false;
   int short_steps_ = 0; // on end

@@ -21,11 +21,6 @@ struct InteriorRules {
   Rule<double> to_boundary{0.98, "interior.to_boundary",
                            "part of the way to the next point's corner that a step takes [-]; off: 1",
                            "doc/theory.md (5.19)"};
-  Rule<double> longer_by{0.3, "interior.longer_by",
-                         "step that a corrector of Gondzio aims at, beyond the one that can be taken [-]",
-                         "doc/theory.md (5.19a)"};
-  Rule<double> range{10, "interior.range", "factor within which a corrector leaves products as they are [-]; off: 1e9",
-                     "doc/theory.md (5.19a)"};
   // Several short steps in a row tell that points start with a pressure far below what they will bear, as where the foundation bends the body
   // and not the load: the path restarts with a larger pressure. A few steps are short on any path.
   Rule<double> short_step{0.25, "interior.short_step", "length of a short step [-]", "doc/theory.md (5.16)"};

@@ -137,24 +137,6 @@ KOKKOS_INLINE_FUNCTION InteriorPoint moved(const InteriorPoint &x, const double 
   return {x.pressure + part * change.pressure, x.opening + part * change.opening, x.dent + part * change.dent};
 }
 
-/// The target of a change, corrected for a longer step than can be taken: products outside [mu/range, range mu] are brought to its ends, a
-/// large one by no more than range mu.                                                                           (5.19a)
-/// @param change  what the linearized equations have for `target`   @param part  of it, which is to become a step
-KOKKOS_INLINE_FUNCTION InteriorTarget centered_target(const InteriorPoint &x, const InteriorPoint &change,
-                                                      const InteriorTarget &target, const double part, const double mu,
-                                                      const double range, const Foundation &f)
-{
-  const auto missing = [&](const double product) {
-    const double wanted = math::larger(mu / range, math::fmin(range * mu, product));
-    return math::larger(wanted - product, -range * mu);
-  };
-  const InteriorPoint next = moved(x, part, change);
-  InteriorTarget centered = target;
-  centered.opening += missing(next.pressure * next.opening);
-  if (can_yield(f)) centered.dent += missing(spare_strength(next, f) * next.dent);
-  return centered;
-}
-
 /// The largest step along a change that keeps p, s, d and q >= 0; infinite if every step does.
 KOKKOS_INLINE_FUNCTION double longest_step(const InteriorPoint &x, const InteriorPoint &change, const Foundation &f)
 {
