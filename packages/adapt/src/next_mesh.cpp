@@ -3,6 +3,7 @@
 
 #include "rpc/adapt/new_sizes.hpp"
 #include "rpc/adapt/rules.hpp"
+#include "rpc/core/rules.hpp"
 #include "size_plan.hpp"
 
 #include <algorithm>
@@ -45,8 +46,7 @@ long long two_digits(const double value)
 double MeshPlanner::made_per_planned(const double cells, const int dim) const
 {
   if (predicted_cells_ > 0) return cells / predicted_cells_;
-  if (!nests(task_.mesh, task_.adapt)) return dim == 2 ? 1. : plan_rules.excess;
-  return dim == 2 ? plan_rules.excess : plan_rules.excess_nested;
+  return dim == 2 && !nests(task_.mesh, task_.adapt) ? 1. : plan_rules.excess;
 }
 
 /// @param eta, target  estimates, of the present mesh and of the last one [J^(1/2)]
@@ -55,7 +55,7 @@ MeshPlanner::Goal MeshPlanner::goal(const double eta, const double target, const
 {
   const bool nested = nests(task_.mesh, task_.adapt);
   const double far = (dim == 2 ? plan_rules.aim : plan_rules.aim_in_space) * target;
-  const bool is_near = eta < (dim == 2 || nested ? plan_rules.near : plan_rules.near_in_space) * far;
+  const bool is_near = eta < plan_rules.near * far;
   const double wanted = is_near && nested ? plan_rules.aim_near_nested * target : far;
   const double meshes =
       std::ceil(std::log(eta / wanted) / std::log(double(plan_rules.greatest_reduction))); // in equal steps
@@ -90,11 +90,11 @@ bool MeshPlanner::nothing_gained(const double eta, const double target, const do
                                  const mesh::Element &element) const
 {
   const double most = static_cast<double>(task_.adapt.max_dofs);
-  if (!(planned_at_limit_ && dofs > plan_rules.share_again * plan_rules.share_of_max_dofs * most)) return false;
+  if (!(planned_at_limit_ && dofs > plan_rules.share_of_max_dofs * plan_rules.share_of_max_dofs * most)) return false;
   const double needed = dofs * growth_for(eta / target, element);
   const double needed_before = before_.dofs * growth_for(before_.eta / target, element);
-  return eta > plan_rules.hardly_less * before_.eta ||
-         (needed > most && needed > growth_for(plan_rules.hardly_less, element) * needed_before);
+  return eta > headway_rules.falls * before_.eta ||
+         (needed > most && needed > growth_for(headway_rules.falls, element) * needed_before);
 }
 
 /// The end of a message on the limit.
@@ -127,7 +127,7 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
   if (!reason.empty()) return std::nullopt;
   const double eta = std::sqrt(estimate.total()), target = task_.adapt.target * std::sqrt(energy_norm_squared);
   const double relative = eta / std::sqrt(energy_norm_squared);
-  goal_ = goal(eta, target, relative > plan_rules.hardly_less * least_, mesh.dim());
+  goal_ = goal(eta, target, relative > headway_rules.falls * least_, mesh.dim());
   // Where unseen contact is most of the error, errors elsewhere are those of another solution: no cell grows for them.
   if (estimate.misses_contact()) goal_.growth = 1;
   const double dofs = dofs_of(mesh), cells = cells_of(mesh), ratio = made_per_planned(cells, mesh.dim());
@@ -138,11 +138,9 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
     needed_ = dofs * growth_for(eta / target, mesh.element);
   }
   const double most = static_cast<double>(task_.adapt.max_dofs);
-  const double share = planned_at_limit_ ? plan_rules.share_again : plan_rules.share_of_max_dofs;
-  const double allowed = share * most * cells / dofs / ratio;
-  const double sensible = plan_rules.greatest_excess * cells * growth_for(eta / goal_.bound, mesh.element);
+  const double allowed = plan_rules.share_of_max_dofs * most * cells / dofs / ratio;
   const double squared_error = goal_.bound * goal_.bound;
-  Sizes sizes = new_sizes(d, estimate, {squared_error, sensible, goal_.growth});
+  Sizes sizes = new_sizes(d, estimate, {squared_error, std::numeric_limits<double>::infinity(), goal_.growth});
   const bool at_limit = sizes.predicted_cells > allowed;
   if (at_limit && nothing_gained(eta, target, dofs, mesh.element)) {
     reason = "the target is not reached within \"Adapt->Max Dofs\" = " + std::to_string(task_.adapt.max_dofs) + ": " +
@@ -172,7 +170,7 @@ std::optional<mesh::MeshOptions> MeshPlanner::smaller(const fem::Discretization 
   const double made = dofs_of(too_large),
                most = plan_rules.share_of_max_dofs * static_cast<double>(task_.adapt.max_dofs);
   planned_at_limit_ = true;
-  if (made < smallest_try_ && tries_ < plan_rules.most_tries) {
+  if (made < headway_rules.falls * smallest_try_) {
     smallest_try_ = made;
     ++tries_;
     double allowed = predicted_cells_ * most / made;
