@@ -74,7 +74,7 @@ std::optional<Teuchos::ParameterList> deck_of(const int argc, char *argv[])
 bool may_be_nearly_incompressible(const fem::Materials &materials)
 {
   const auto is = [](const fem::Material &material) {
-    return material.poissons_ratio > analysis::linear_rules.mixed_order_two;
+    return material.poissons_ratio > analysis::linear_rules.mixed_above;
   };
   return is(materials.common) || std::any_of(materials.block.begin(), materials.block.end(),
                                              [&is](const auto &block) { return is(block.second); });

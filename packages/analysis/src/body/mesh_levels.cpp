@@ -110,8 +110,7 @@ double largest_ratio(const fem::Discretization &d, const fem::Materials &materia
 
 bool is_nearly_incompressible(const fem::Discretization &d, const fem::Materials &materials)
 {
-  const double least = d.mesh->element.order == 1 ? linear_rules.mixed_order_one : linear_rules.mixed_order_two;
-  return d.kinematics != fem::Kinematics::plane_stress && largest_ratio(d, materials) > least;
+  return d.kinematics != fem::Kinematics::plane_stress && largest_ratio(d, materials) > linear_rules.mixed_above;
 }
 
 solver::Body body_of(const fem::Discretization &d)

@@ -277,7 +277,7 @@ void give_up_search(const Point &way, const bool jumps, StepSolution &s)
   std::ostringstream reason;
   reason << "the obstacle that a force or a spring moves does not come to rest: "
          << (jumps ? "the force that it takes jumps at one place, as at a kink of its surface"
-                   : "of " + std::to_string(step_rules.most_searches) + " searches none has brought it nearer")
+                   : "of " + std::to_string(step_rules.most_attempts) + " searches none has brought it nearer")
          << ", and the last search has moved it by " << length(way);
   s.uzawa.reason = reason.str();
 }
@@ -317,8 +317,8 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
   std::optional<StepSolution> searched; // what the searches before have taken
   Point way_before{};
   ObstaclePlaces places;
-  Headway searches({1, Headway::unlimited, Headway::unlimited, step_rules.most_searches - 1});
-  Headway ways({headway_rules.falls, Headway::unlimited, step_rules.most_searches - 1}); // of the obstacle, which fall
+  Headway searches({1, Headway::unlimited, Headway::unlimited, step_rules.most_attempts - 1});
+  Headway ways({headway_rules.falls, Headway::unlimited, step_rules.most_attempts - 1}); // of the obstacle, which fall
   while (true) {
     const bool is_rough = !searched && bends(model);
     starts.may_rest = by_force && !is_rough && !on_foundation;

@@ -96,8 +96,7 @@ CoarseModel::CoarseModel(const int size, const solver::SymmetricEntries &K, solv
 
 bool CoarseModel::is_cheap(const double solve_seconds) const
 {
-  return factor_ && factor_->cost().seconds <
-                        std::min<double>(choice_rules.model_seconds, choice_rules.model_solves * solve_seconds);
+  return factor_ && factor_->cost().seconds < choice_rules.model_solves * solve_seconds;
 }
 
 void CoarseModel::Unknowns::move(const double t, const Unknowns &d)
@@ -202,7 +201,7 @@ void CoarseModel::update()
     add(-scale_, change.coarse, missing);
     for (const auto &c : learnt_) add(-dot(c, change.forces), c, missing);
     const double missed = dot(missing, change.forces);
-    if (!(missed > choice_rules.least_missing * std::abs(dot(change.moved, change.forces)))) continue;
+    if (!(missed > choice_rules.coarse_error * std::abs(dot(change.moved, change.forces)))) continue;
     for (double &c : missing) c /= std::sqrt(missed);
     learnt_.push_back(std::move(missing));
   }

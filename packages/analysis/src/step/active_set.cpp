@@ -45,7 +45,7 @@ ActiveSetLoop::ActiveSetLoop(contact::Iterate &iterate, const ActiveSetTolerance
   path_ = Path::behind; // it knows no friction
   turns_ = iterate_.points().dim == 3;
   confirmed_headway_ = Headway({headway_rules.falls, turns_ ? choice_rules.most_idle_turns : 0});
-  headway_ = within(choice_rules.most_changes);
+  headway_ = within(static_cast<int>(choice_rules.most_left));
 }
 
 void ActiveSetLoop::starts_predicted(const FoundBy coarser, MakeCoarseChoice coarse_choice)
@@ -142,11 +142,11 @@ bool ActiveSetLoop::newton_hands_over(MinimizationSteps &steps)
   const Vector &u = solver::tpetra(steps.at().getX());
   const solver::NewtonContext &context = steps.context();
   ++newton_.steps;
-  newton_.left *= std::max<double>(choice_rules.least_left, std::abs(1 - context.step_length));
+  newton_.left *= std::max<double>(solver::newton_rules.largest_residual, std::abs(1 - context.step_length));
   newton_.short_steps += context.step_length < solver::newton_rules.cut_short;
   const bool has_settled = std::abs(context.step_length - 1) <= solver::newton_rules.to_the_minimum &&
                            context.functional.piece(u) == context.piece;
-  if (has_settled && !rubs_ && confirmations_ < choice_rules.most_confirmations) {
+  if (has_settled && !rubs_ && confirmations_ < solver::newton_rules.most_inner_steps) {
     ++confirmations_;
     take_over(u, path_rules.trial_changes);
     return true;
@@ -158,7 +158,7 @@ bool ActiveSetLoop::newton_hands_over(MinimizationSteps &steps)
     return true;
   }
   if (!is_blocked || std::exchange(resumed_, true)) return false;
-  take_over(u, choice_rules.most_changes_resumed);
+  take_over(u, solver::newton_rules.most_inner_steps);
   return true;
 }
 
@@ -252,7 +252,7 @@ bool ActiveSetLoop::may_settle()
   const double overshoot = choice_->overshoot, infinity = std::numeric_limits<double>::infinity();
   const double lever = overshoot < 1 ? overshoot / (1 - overshoot) : infinity;
   const bool creeps = lever > 0 && lever < levers_[1] && levers_[0] < levers_[2];
-  const bool is_near = creeps && 2 * lever <= choice_rules.most_left_creeping * (levers_[1] - lever);
+  const bool is_near = creeps && 2 * lever <= choice_rules.fewest_to_tell * (levers_[1] - lever);
   levers_ = {lever, levers_[0], levers_[1]};
   if (before == 0) return true; // not by a solve, but by where it starts
   const auto number = static_cast<double>(changes), fewest = static_cast<double>(fewest_changes_);
@@ -260,7 +260,7 @@ bool ActiveSetLoop::may_settle()
   const bool contracts = left_ <= choice_rules.most_left;
   fewest_changes_ = fewest_changes_ > 0 ? std::min(fewest_changes_, changes) : changes;
   const bool tells = predicted_ || before > 1;
-  if (tells && changes > choice_rules.few_changes && overshoot > most_overshoot_) return false;
+  if (tells && overshoot > most_overshoot_) return false;
   if (creeps && !is_near && !contracts && before >= choice_rules.fewest_to_tell) return false;
   return headway_.take(contracts || is_near, overshoot > choice_rules.much ? 2 : 1) != Headway::Answer::stuck;
 }
@@ -269,7 +269,7 @@ bool ActiveSetLoop::may_settle()
 bool ActiveSetLoop::is_for_coarse_mesh() const
 {
   const bool was_needed = predicted_ && *predicted_ != FoundBy::choices; // more than choices by pressures, there
-  return was_needed || (steps_ >= choice_rules.fewest_to_tell && left_ > choice_rules.one_more) ||
+  return was_needed || (steps_ >= choice_rules.fewest_to_tell && left_ > 1) ||
          choice_->overshoot > choice_rules.much * most_overshoot_;
 }
 

@@ -39,7 +39,7 @@ struct LastMinimum {
   DualVariables::Values dual; ///< with friction: what it had, before pressures became multipliers
 };
 
-Prediction predict(const Problem &problem, const Step &step, Iterate &iterate, Vector &u, const Starts &starts);
+Prediction predict(const Problem &, const Step &, Iterate &, Vector &u, const Starts &, double near);
 Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector> &u, SolverState &state,
                       const StepOptions &options, int iteration, const LastMinimum &last,
                       const std::optional<PredictedBy> &predicted, const Progress &progress);
@@ -66,7 +66,8 @@ StepSolution solve_with(const Problem &problem, const Step &step, SolverState &s
   if (progress.start) progress.start(problem, step);
   {
     const Timed timer("prediction", s.prediction_seconds);
-    Prediction prediction = predict(problem, step, iterate, *u, starts); // (5.11), (11.5)
+    Prediction prediction =
+        predict(problem, step, iterate, *u, starts, step_rules.of_rounding * options.uzawa.tolerance); // (5.11), (11.5)
     s.not_predicted = std::move(prediction.reason);
     s.levels = std::move(prediction.work);
     s.start = prediction.nearest;
@@ -146,9 +147,8 @@ namespace
 
 // Predict: the nearest of the given states, or what coarser meshes say ----------------------------------------------------
 
-/// Starts from the state whose displacement and multipliers are nearest to equilibrium.
-/// @return whether that is so near that a prediction would be no better
-bool start_from_nearest(Iterate &iterate, Vector &u, const Starts &starts, std::size_t &nearest)
+/// Starts from the state whose displacement and multipliers are nearest to equilibrium. @return whether it is so near that a prediction would be no better
+bool start_from_nearest(Iterate &iterate, Vector &u, const Starts &starts, const double near, std::size_t &nearest)
 {
   const std::vector<contact::ContactState> &states = starts.states;
   const Vector rest(u, Teuchos::Copy);
@@ -171,20 +171,20 @@ bool start_from_nearest(Iterate &iterate, Vector &u, const Starts &starts, std::
     nearest = k;
   }
   if (nearest + 1 < states.size()) take(states[nearest]);
-  return !starts.predict ||
-         (least <= step_rules.near_equilibrium * std::max(iterate.force_scale(), most) &&
-          contact::contact_law_residual(iterate.points(), iterate.state(u)) <= step_rules.near_equilibrium);
+  return !starts.predict || (least <= near * std::max(iterate.force_scale(), most) &&
+                             contact::contact_law_residual(iterate.points(), iterate.state(u)) <= near);
 }
 
 /// @return its reason is why no coarser mesh predicted the start; empty if one did, or none was needed
-Prediction predict(const Problem &problem, const Step &step, Iterate &iterate, Vector &u, const Starts &starts)
+Prediction predict(const Problem &problem, const Step &step, Iterate &iterate, Vector &u, const Starts &starts,
+                   const double near)
 {
   Prediction prediction;
   if (starts.states.empty() && !contact::is_loaded(*u.getMap()->getComm(), step.elastic, step.contact)) {
     prediction.reason = "nothing loads the body"; // the start is the solution; a coarser mesh would see other gaps
     return prediction;
   }
-  if (!starts.states.empty() && start_from_nearest(iterate, u, starts, prediction.nearest)) return prediction;
+  if (!starts.states.empty() && start_from_nearest(iterate, u, starts, near, prediction.nearest)) return prediction;
   const std::size_t nearest = prediction.nearest;
   prediction.reason = "there is none";
   if (starts.predict) prediction = starts.predict();

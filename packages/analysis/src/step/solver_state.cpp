@@ -48,12 +48,10 @@ double rough_part(const double nu)
   return std::min(1., std::sqrt((1 - 2 * nu) / linear_rules.rough_incompressible));
 }
 
-/// Prolongators of quadratic elements want more smoothing: 32 to 35 instead of 34 to 37 iterations on the beam (P2).
 solver::LinearSolverOptions tuned(solver::LinearSolverOptions options, const Problem &problem, const bool is_mixed)
 {
   const fem::Discretization &d = problem.discretization();
   const fem::Materials &materials = problem.model().materials;
-  if (d.mesh->element.order == 2) options.damping = linear_rules.damping_order_two;
   if (d.kinematics == fem::Kinematics::plane_stress) return options; // nothing is nearly incompressible
   const double nu = largest_ratio(d, materials);
   options.expected_iterations = expected_iterations(*d.mesh, nu);

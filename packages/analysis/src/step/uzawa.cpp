@@ -5,6 +5,7 @@
 #include "rpc/core/causes.hpp"
 #include "rpc/core/headway.hpp"
 #include "rpc/core/interrupt.hpp"
+#include "rpc/core/rules.hpp"
 
 #include <cmath>
 #include <iomanip>
@@ -58,7 +59,7 @@ bool is_over(UzawaResult &result, const Minimization &found, const double previo
     return true;
   }
   const double worst = result.residuals.worst();
-  const double good = found.bounds_follow ? step_rules.fast_with_bounds : step_rules.fast;
+  const double good = found.bounds_follow ? headway_rules.falls : step_rules.fast;
   const bool slow = result.iterations > 1 && Headway({good, 0}).add(worst, previous) == Headway::Answer::stuck;
   const bool raised = slow && !found.bounds_follow && raise_penalty(); // (5.12)
   // A minimization that stopped at the rounding of an ill-conditioned scene is good enough to go on from, while that helps.

@@ -105,8 +105,7 @@ std::optional<CoarsestSolver::Update> DirectSolver::follow(const double slight)
   const MatrixChanges changes = changes_since(factored_, *A_, dofs_per_node_);
   for (const double least : {0., slight}) {
     const LowRankTerms wanted = low_rank_terms(changes, least, dofs_per_node_);
-    if (cost().seconds_of_column * update_.num_new(wanted.terms) > linear_rules.worth_a_factor * cost().seconds)
-      continue;
+    if (cost().seconds_of_column * update_.num_new(wanted.terms) > cost().seconds) continue;
     const Comm &comm = *A_->getComm();
     const bool has_vectors = to_root_.is_null() || comm.getRank() == 0;
     const double most_kept = linear_rules.kept_of_free * min_all(comm, memory_left()) / sizeof(double);

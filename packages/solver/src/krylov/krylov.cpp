@@ -201,7 +201,7 @@ KrylovResult Krylov::solve(const Preconditioner &B, const bool is_symmetric, con
   if (!result.broken || !is_symmetric || !std::isfinite(x.norm2())) return result;
   Vector residual(b, Teuchos::Copy);
   H_->apply(x, residual, Teuchos::NO_TRANS, -1., 1.);
-  if (!(energy_error(B, b, residual) <= linear_rules.small_error)) return result;
+  if (!(energy_error(B, b, residual) <= linear_rules.large_error)) return result;
   Vector move(b.getMap());
   const double rest = std::max(wanted.residual * b.norm2() / residual.norm2(), options_.tolerance);
   KrylovResult more = iterate(method, is_symmetric, B, residual, move, rest, {});

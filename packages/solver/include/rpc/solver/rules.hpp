@@ -32,16 +32,15 @@ struct LinearRules {
   // How CG goes on.
   Rule<int> window{20, "linear.window", "iterations that a rate is taken over [-]",
                    "CG stands still for ten now and then, (4.10a)"};
-  Rule<double> small_error{1e-4, "linear.small_error", "error at which a breakdown is that of rounding [-]",
-                           "of a singular matrix most of the error is left"};
-  Rule<double> large_error{1e-2, "linear.large_error", "error for one application of an exact factor [-]",
-                           "with less a thin strip takes 16 Newton steps instead of 6"};
-  Rule<int> gmres_vectors{50, "linear.gmres_vectors", "GMRES iterations before a restart [-]",
+  Rule<double> large_error{
+      1e-2, "linear.large_error",
+      "error for one application of an exact factor, and at which a breakdown is that of rounding [-]",
+      "with less a thin strip takes 16 Newton steps instead of 6"};
+  Rule<int> gmres_vectors{50, "linear.gmres_vectors",
+                          "iterations of GMRES, and of BiCGStab in a pass of the mixed form, before a restart [-]",
                           "with multigrid it takes fewer"};
 
   // The mixed form, (4.14), (4.15).
-  Rule<int> iterations_of_pass{80, "linear.iterations_of_pass", "BiCGStab iterations before a restart [-]",
-                               "its own residuals are no longer those of x by then"};
   Rule<double> degree_of_root{0.7, "linear.degree_of_root", "degree over the root of the condition number [-]",
                               "least time"};
   Rule<int> least_degree{4, "linear.least_degree", "degree for pressures at least [-]", "least time"};
@@ -90,7 +89,6 @@ struct LinearRules {
                                  "times of both"};
   Rule<int> most_width{200, "linear.most_width", "width of a band as numbered [-]", "times of both"};
   Rule<double> short_time{5e-3, "linear.short_time", "a factor made for the slightest change [s]", "not measured"};
-  Rule<double> worth_a_factor{0.7, "linear.worth_a_factor", "time of an update over a factor's [-]", "(4.11)"};
   Rule<double> kept_of_free{0.25, "linear.kept_of_free",
                             "entries of an update, and of the model that chooses states, over the free memory [-]",
                             "not measured"};
