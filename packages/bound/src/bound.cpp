@@ -3,6 +3,7 @@
 
 #include "bound_parts.hpp"
 #include "boundary.hpp"
+#include "cell_kinds.hpp"
 #include "contact_terms.hpp"
 #include "descent.hpp"
 #include "functionals.hpp"
@@ -150,7 +151,12 @@ Bounded<ContactFacets> bounded_in_plane(const analysis::Problem &problem, const 
 {
   const fem::Discretization &d = problem.discretization();
   const analysis::Model model = problem.model().seen_at(s.step.time);
-  const CellInput in = cell_input(problem, model);
+  CellInput in = cell_input(problem, model);
+  const Kinds kinds = in.of_revolution()
+                          ? all_different(in.num_cells())
+                          : kinds_of_cells(d.mesh->comm(), in.coords, in.cells, in.block, in.reference.sides);
+  in.kind = kinds.kind;
+  in.example = kinds.example;
   const Boundary boundary = boundary_of(problem, s.step, in.facets, tractions_of(s.contact));
 
   Bounded<ContactFacets> bounded;
@@ -187,11 +193,9 @@ Bounded<ContactFacets> bounded_in_plane(const analysis::Problem &problem, const 
   const RCP<const Vector> on_overlap = fem::on_overlap(d, *u);
   const CellForms forms = cell_forms(in, *on_overlap);
   const StarSolves stars(in, all, forms, exchange);
-  const DeviceView<double **> scratch("rpc::bound::scratch", in.num_cells(), in.reference.tractions);
-  Descent descent(
-      [&](const Tractions &x, const bool linear, const Tractions &y) { add_up(in, forms, x, linear, scratch, y); },
-      [&](const Tractions &g, const Tractions &z) { stars.apply(g, z); },
-      [&](const Tractions &x, const Tractions &y) { return product_over_ranks(in, comm, x, y); }, t);
+  Descent descent([&](const Tractions &x, const bool linear, const Tractions &y) { add_up(in, forms, x, linear, y); },
+                  [&](const Tractions &g, const Tractions &z) { stars.apply(g, z); },
+                  [&](const Tractions &x, const Tractions &y) { return product_over_ranks(in, comm, x, y); }, t);
   std::vector<double> falls;
   for (int step = 0; step < steps; ++step) falls.push_back(descent.step());
   const StressDifference left = stress_difference(in, comm, t, *on_overlap, of_cell);

@@ -22,7 +22,9 @@ struct CellInput {
   RevolutionTables revolution; ///< of bodies of revolution
   double on_axis = 0;          ///< of these: places with r up to this lie on the axis [m]
 
-  LO num_owned_cells = 0; ///< the first ones
+  DeviceView<int *> kind;   ///< (cells) kinds of congruent cells of one material; of bodies of revolution each is one
+  DeviceView<LO *> example; ///< (kinds) a cell of each
+  LO num_owned_cells = 0;   ///< the first ones
 
   LO num_cells() const { return static_cast<LO>(cells.extent(0)); }
   KOKKOS_INLINE_FUNCTION bool of_revolution() const { return revolution.columns > 0; }

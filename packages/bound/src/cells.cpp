@@ -14,17 +14,16 @@ namespace
 
 using ReadU = decltype(device_read(std::declval<const Vector &>()));
 
-/// Second and first derivatives of a cell's energy by its tractions.
+/// Second and first derivatives of the energy of a kind of cells by its tractions.
 struct MakeForms {
   CellInput in;
-  ReadU u;
   CellForms out;
-  int order;
 
-  KOKKOS_FUNCTION void operator()(const LO c) const
+  KOKKOS_FUNCTION void operator()(const LO kind) const
   {
+    const LO c = in.example(kind);
     const ReferenceStress &r = in.reference;
-    const int k = r.degree, nt = r.tractions, n = r.columns(), sides = r.sides;
+    const int nt = r.tractions, n = r.columns();
     const AffineCell cell(in, c);
     CellEnergy e(in, cell, c, 0);
     e.factor_inner(nt, n);
@@ -43,46 +42,37 @@ struct MakeForms {
           e.of_force[i] -= sum;
       }
     }
-    // From reference tractions to those of the facets: t^ = F^-1 t, with signs.
-    double tau[ReferenceStress::most_tractions];
-    const bool loaded = in.force[0] != 0 || in.force[1] != 0;
-    tractions_of_force(in, cell, c, tau);
+    // From reference tractions to those of the facets: t^ = F^-1 t.
     const auto &G = cell.inverse;
-    double factor[ReferenceStress::most_tractions / 2];
-    for (int p = 0; p < nt / 2; ++p) factor[p] = side_factor(in.facets.sign(c, p / (k + 1)), p % (k + 1));
     for (int p = 0; p < nt / 2; ++p)
-      for (int q = 0; q < nt / 2; ++q) {
+      for (int q = 0; q <= p; ++q) {
         double half[2][2]; // A G
         for (int i = 0; i < 2; ++i)
           for (int j = 0; j < 2; ++j)
             half[i][j] = of_tractions[2 * p + i][2 * q] * G[0][j] + of_tractions[2 * p + i][2 * q + 1] * G[1][j];
         for (int i = 0; i < 2; ++i)
-          for (int j = 0; j < 2; ++j)
-            out.A(c, 2 * p + i, 2 * q + j) = factor[p] * factor[q] * (G[0][i] * half[0][j] + G[1][i] * half[1][j]);
+          for (int j = 0; j < 2 && 2 * q + j <= 2 * p + i; ++j)
+            out.A(kind, row_of_triangle(2 * p + i) + 2 * q + j) = G[0][i] * half[0][j] + G[1][i] * half[1][j];
       }
-    for (int s = 0; s < sides; ++s) {
-      const LO a = in.cells(c, s), b = in.cells(c, (s + 1) % sides), m = order == 2 ? in.cells(c, sides + s) : a;
-      for (int j = 0; j <= k; ++j) {
-        const int p = (s * (k + 1) + j) * 2;
-        const double sign = side_factor(in.facets.sign(c, s), j);
-        for (int i = 0; i < 2; ++i) {
-          double sum = G[0][i] * e.of_force[p] + G[1][i] * e.of_force[p + 1];
-          sum -= legendre_moment(order, j, u(dof(2, a, i)), u(dof(2, b, i)), u(dof(2, m, i)));
-          sum *= sign;
-          for (int q = 0; q < nt && loaded; ++q) sum -= out.A(c, p + i, q) * factor[q / 2] * tau[q];
-          out.b(c, p + i) = sum;
-        }
-      }
+    if (in.force[0] == 0 && in.force[1] == 0) return;
+    double tau[ReferenceStress::most_tractions];
+    tractions_of_force(in, cell, c, tau);
+    for (int p = 0; p < nt; ++p) {
+      const int of = p / 2 * 2;
+      double sum = G[0][p % 2] * e.of_force[of] + G[1][p % 2] * e.of_force[of + 1];
+      for (int q = 0; q < nt; ++q) sum -= out.second(kind, p, q) * tau[q];
+      out.b(kind, p) = sum;
     }
   }
 };
 
-/// The traction coefficients of a cell in the signs of its facets.
+/// The traction coefficients of a cell, outward.
 KOKKOS_INLINE_FUNCTION void read_tractions(const CellInput &in, const Tractions &t, const LO c, double *x)
 {
-  const int k = in.reference.degree;
+  const int per_facet = 2 * (in.reference.degree + 1);
   for (int s = 0; s < in.reference.sides; ++s)
-    for (int q = 0; q < 2 * (k + 1); ++q) x[s * 2 * (k + 1) + q] = t(in.facets.of_cell(c, s) * 2 * (k + 1) + q);
+    for (int q = 0; q < per_facet; ++q)
+      x[s * per_facet + q] = side_factor(in.facets.sign(c, s), q / 2) * t(in.facets.of_cell(c, s) * per_facet + q);
 }
 
 /// Energy and balance of the stress of a cell.
@@ -139,12 +129,11 @@ struct Difference {
   KOKKOS_FUNCTION void operator()(const LO c, double &sum, double &imbalance, double &force) const
   {
     const ReferenceStress &r = in.reference;
-    const int k = r.degree, nt = r.tractions, n = r.columns(), nm = r.monomials;
+    const int nt = r.tractions, n = r.columns(), nm = r.monomials;
     const AffineCell cell(in, c);
     CellEnergy e(in, cell, c, nt);
     double x[ReferenceStress::most_columns], tau[ReferenceStress::most_tractions];
     read_tractions(in, t, c, x);
-    for (int q = 0; q < nt; ++q) x[q] *= side_factor(in.facets.sign(c, q / 2 / (k + 1)), q / 2 % (k + 1));
     double off = 0;
     judge_balance(c, x, cell, off, force);
     imbalance = math::fmax(imbalance, off);
@@ -196,36 +185,52 @@ struct Difference {
 CellForms cell_forms(const CellInput &in, const Vector &u)
 {
   if (in.of_revolution()) return forms_of_revolution(in, u);
-  const int nt = in.reference.tractions;
-  CellForms forms{DeviceView<double ***>("rpc::bound::A", in.num_cells(), nt, nt),
-                  DeviceView<double **>("rpc::bound::b", in.num_cells(), nt)};
-  Kokkos::parallel_for("rpc::bound::make_forms", device_range(in.num_cells()),
-                       MakeForms{in, device_read(u), forms, in.reference.degree});
+  const CellForms forms(in);
+  Kokkos::parallel_for("rpc::bound::make_forms", device_range(static_cast<LO>(in.example.extent(0))),
+                       MakeForms{in, forms});
+  const auto x = device_read(u);
+  const auto to = forms.boundary;
+  const Facets facets = in.facets;
+  const int order = in.reference.degree;
+  Kokkos::parallel_for(
+      "rpc::bound::boundary_displacements", device_range(facets.size()), KOKKOS_LAMBDA(const LO f) {
+        if (!facets.on_boundary(f)) return; // elsewhere those of both cells cancel
+        const LO a = facets.node(f, 0), b = facets.node(f, 1), m = order == 2 ? facets.middle(f) : a;
+        for (int j = 0; j <= order; ++j)
+          for (int i = 0; i < 2; ++i)
+            to((f * (order + 1) + j) * 2 + i) =
+                -legendre_moment(order, j, x(dof(2, a, i)), x(dof(2, b, i)), x(dof(2, m, i)));
+      });
   Kokkos::fence();
   return forms;
 }
 
-void add_up(const CellInput &in, const CellForms &forms, const Tractions &t, const bool linear,
-            const DeviceView<double **> &scratch, const Tractions &sum)
+void add_up(const CellInput &in, const CellForms &forms, const Tractions &t, const bool linear, const Tractions &sum)
 {
   const int nt = in.reference.tractions, per_facet = 2 * (in.reference.degree + 1);
+  if (linear)
+    Kokkos::deep_copy(sum, forms.boundary);
+  else
+    Kokkos::deep_copy(sum, 0);
   Kokkos::parallel_for(
       "rpc::bound::derivative_of_cells", device_range(in.num_cells()), KOKKOS_LAMBDA(const LO c) {
-        double x[ReferenceStress::most_tractions];
+        double x[ReferenceStress::most_tractions], y[ReferenceStress::most_tractions];
         read_tractions(in, t, c, x);
+        const int kind = in.kind(c);
+        const double *row = forms.A.data() + kind * forms.A.extent(1);
         for (int i = 0; i < nt; ++i) {
-          double y = linear ? forms.b(c, i) : 0;
-          for (int j = 0; j < nt; ++j) y += forms.A(c, i, j) * x[j];
-          scratch(c, i) = y;
+          double own = (linear ? forms.b(kind, i) : 0) + row[i] * x[i];
+          for (int j = 0; j < i; ++j) {
+            own += row[j] * x[j];
+            y[j] += row[j] * x[i];
+          }
+          y[i] = own;
+          row += i + 1;
         }
-      });
-  Kokkos::parallel_for(
-      "rpc::bound::gather_at_facets", device_range(in.facets.size()), KOKKOS_LAMBDA(const LO f) {
-        for (int q = 0; q < per_facet; ++q) {
-          double y = scratch(in.facets.cell(f, 0), in.facets.ordinal(f, 0) * per_facet + q);
-          if (!in.facets.on_boundary(f)) y += scratch(in.facets.cell(f, 1), in.facets.ordinal(f, 1) * per_facet + q);
-          sum(f * per_facet + q) = y;
-        }
+        for (int s = 0; s < in.reference.sides; ++s)
+          for (int q = 0; q < per_facet; ++q)
+            add_part(sum(in.facets.of_cell(c, s) * per_facet + q),
+                     side_factor(in.facets.sign(c, s), q / 2) * y[s * per_facet + q]);
       });
   Kokkos::fence();
 }

@@ -2,7 +2,11 @@
 #pragma once
 
 #include "cell_stress.hpp"
+#include "float_products.hpp"
 #include "rpc/core/tpetra.hpp"
+
+#include <cstddef>
+#include <type_traits>
 
 namespace rpc::bound
 {
@@ -10,21 +14,43 @@ namespace rpc::bound
 /// Coefficients of tractions: (facets * (k + 1) * 2), facet by facet, of the polynomials P_j.
 using Tractions = DeviceView<double *>;
 
-/// The energies of the cells by their tractions, the inner stresses at their best:
+/// target += one of two parts: their sum does not depend on which comes first.
+template <class Real>
+KOKKOS_INLINE_FUNCTION void add_part(Real &target, const Real part)
+{
+#ifdef KOKKOS_ENABLE_SERIAL
+  if constexpr (std::is_same_v<ExecutionSpace, Kokkos::Serial>)
+    target += part;
+  else
+#endif
+    Kokkos::atomic_add(&target, part);
+}
+
+/// The energies of the kinds of cells by their tractions, outward, the inner stresses at their best:
 ///
 ///     E_T(t) = t . A t/2 + b . t + const.                                                             doc/bounds.md (13.8)
 struct CellForms {
-  DeviceView<double ***> A; ///< (cells, tractions, tractions), in the signs of the facets
-  DeviceView<double **> b;  ///< (cells, tractions)
+  Kokkos::View<double **, Kokkos::LayoutRight, Device> A; ///< (kinds, rows of the lower triangle)
+  DeviceView<double **> b;                                ///< (kinds, tractions)
+  DeviceView<double *> boundary; ///< (tractions) what the displacement on the boundary adds, in the signs of the facets
+
+  CellForms(const CellInput &in)
+      : A("rpc::bound::A", in.example.extent(0), row_of_triangle(in.reference.tractions)),
+        b("rpc::bound::b", in.example.extent(0), in.reference.tractions),
+        boundary("rpc::bound::boundary", static_cast<std::size_t>(in.facets.size()) * 2 * (in.reference.degree + 1))
+  {
+  }
+  KOKKOS_INLINE_FUNCTION double second(const int kind, const int i, const int j) const
+  {
+    return i < j ? A(kind, row_of_triangle(j) + i) : A(kind, row_of_triangle(i) + j);
+  }
 };
 
 /// @param u  (overlap dofs) the displacement whose stress the others are compared with [m]
 CellForms cell_forms(const CellInput &in, const Vector &u);
 
 /// The derivative of the sum of the energies by the tractions, or with linear = false A x.
-/// @param[out] scratch  (cells, tractions)
-void add_up(const CellInput &in, const CellForms &forms, const Tractions &t, bool linear,
-            const DeviceView<double **> &scratch, const Tractions &sum);
+void add_up(const CellInput &in, const CellForms &forms, const Tractions &t, bool linear, const Tractions &sum);
 
 /// Bounds of a(u, u) [J]: where it is an integral of polynomials both are this integral.
 struct Squared {

@@ -2,7 +2,7 @@
 #include "hexahedra.hpp"
 
 #include "facet_polynomials.hpp"
-#include "gauss.hpp"
+#include "rpc/mesh/quadrature.hpp"
 
 namespace rpc::bound
 {
@@ -116,11 +116,12 @@ struct ForcesOfHexahedra {
                                    double (&sigma)[3][3]) const
   {
     const double near = (5 + 3 * math::sqrt(5.)) / 20, far = (5 - math::sqrt(5.)) / 20;
+    const FieldOfHexahedra::Here here(field, cell, c);
     double mean[3][3] = {}, D[3][3];
     for (int q = 0; q < 4; ++q) {
       double at[4] = {far, far, far, far};
       at[q] = near;
-      field.gradient_there(cell, c, at, D);
+      here.gradient(at, D);
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) mean[i][j] += D[i][j] / 4;
     }
@@ -196,11 +197,12 @@ struct MeanMomentsOfHexahedra {
       const LO c = in.facets.cell(f, side);
       const int s = in.facets.ordinal(f, side);
       const AffineTetrahedron cell(in, c);
+      const FieldOfHexahedra::Here here(field, cell, c);
       for (int q = 0; q < static_cast<int>(in.facet_weight.extent(0)); ++q) {
         double at[4] = {}, D[3][3], sigma[3][3];
         for (int v = 0, k = 0; v < 4; ++v)
           if (v != s) at[v] = in.on_facet(q, k++);
-        field.gradient_there(cell, c, at, D);
+        here.gradient(at, D);
         stress_of_gradient(in.lame(in.block(c), 0), in.lame(in.block(c), 1), D, sigma);
         const double w = in.facet_weight(q) / both * (toward > 0 ? 1 : -1);
         for (int a = 0; a < 3; ++a)
@@ -216,51 +218,45 @@ struct MeanMomentsOfHexahedra {
 
 void tabulate_points(HexahedraInput &in)
 {
-  // Along the lines from the centre, whose parts grow with the square; across them: exact for degree 4.
-  constexpr int along = 4, across = 3;
-  const Gauss line = gauss(along);
-  const FacetRule facet = facet_rule(3, across);
-  const int points = along * facet.size();
+  const mesh::QuadratureRule rule = mesh::quadrature(3, mesh::Shape::simplex, 4), // squares of derivatives
+      on_facets = mesh::quadrature(2, mesh::Shape::simplex, 3); // derivatives and a function of a vertex
+  const int points = rule.num_points();
   in.at = DeviceView<double ***>("rpc::bound::at", 4, points, 4);
   in.reference.value = DeviceView<double ***>("rpc::bound::value", 4, points, 4);
   in.reference.weight = DeviceView<double **>("rpc::bound::weight", 4, points);
+  in.in_whole = DeviceView<double **>("rpc::bound::in_whole", points, 4);
+  in.whole_weight = DeviceView<double *>("rpc::bound::whole_weight", points);
   const auto at = Kokkos::create_mirror_view(in.at);
   const auto value = Kokkos::create_mirror_view(in.reference.value);
   const auto weight = Kokkos::create_mirror_view(in.reference.weight);
-  for (int s = 0; s < 4; ++s)
-    for (int r = 0; r < along; ++r)
-      for (int p = 0; p < facet.size(); ++p) {
-        const int q = r * facet.size() + p;
-        for (int v = 0, k = 0; v < 4; ++v)
-          at(s, q, v) = (1 - line.point[r]) / 4 + (v == s ? 0 : line.point[r] * facet.point[p][k++]);
-        weight(s, q) = line.weight[r] * facet.weight[p] * line.point[r] * line.point[r] / 8; // of 1/24
-        value(s, q, 0) = 1;
-        for (int l = 0; l < 3; ++l) value(s, q, 1 + l) = at(s, q, l + 1) - 0.25;
-      }
-  in.in_whole = DeviceView<double **>("rpc::bound::in_whole", points, 4);
-  in.whole_weight = DeviceView<double *>("rpc::bound::whole_weight", points);
   const auto in_whole = Kokkos::create_mirror_view(in.in_whole);
   const auto whole = Kokkos::create_mirror_view(in.whole_weight);
-  for (int r = 0; r < along; ++r)
-    for (int p = 0; p < facet.size(); ++p) {
-      const int q = r * facet.size() + p;
-      in_whole(q, 0) = 1 - line.point[r];
-      for (int v = 0; v < 3; ++v) in_whole(q, 1 + v) = line.point[r] * facet.point[p][v];
-      whole(q) = line.weight[r] * facet.weight[p] * line.point[r] * line.point[r] / 2; // of 1/6
+  for (int q = 0; q < points; ++q) {
+    const auto &x = rule.point[q];
+    const double last = 1 - x[0] - x[1] - x[2];
+    for (int v = 0; v < 3; ++v) in_whole(q, v) = x[v];
+    in_whole(q, 3) = last;
+    whole(q) = rule.weight[q];
+    for (int s = 0; s < 4; ++s) { // the part's last corner is the centre
+      for (int v = 0, k = 0; v < 4; ++v) at(s, q, v) = last / 4 + (v == s ? 0 : x[k++]);
+      weight(s, q) = rule.weight[q] / 4;
+      value(s, q, 0) = 1;
+      for (int l = 0; l < 3; ++l) value(s, q, 1 + l) = at(s, q, l + 1) - 0.25;
     }
+  }
   Kokkos::deep_copy(in.in_whole, in_whole);
   Kokkos::deep_copy(in.whole_weight, whole);
   Kokkos::deep_copy(in.at, at);
   Kokkos::deep_copy(in.reference.value, value);
   Kokkos::deep_copy(in.reference.weight, weight);
-  const FacetRule rule = facet_rule(3, 3);
-  in.on_facet = DeviceView<double **>("rpc::bound::on_facet", rule.size(), 3);
-  in.facet_weight = DeviceView<double *>("rpc::bound::facet_weight", rule.size());
+  in.on_facet = DeviceView<double **>("rpc::bound::on_facet", on_facets.num_points(), 3);
+  in.facet_weight = DeviceView<double *>("rpc::bound::facet_weight", on_facets.num_points());
   const auto on_facet = Kokkos::create_mirror_view(in.on_facet);
   const auto weights = Kokkos::create_mirror_view(in.facet_weight);
-  for (int q = 0; q < rule.size(); ++q) {
-    for (int v = 0; v < 3; ++v) on_facet(q, v) = rule.point[q][v];
-    weights(q) = rule.weight[q];
+  for (int q = 0; q < on_facets.num_points(); ++q) {
+    for (int v = 0; v < 2; ++v) on_facet(q, v) = on_facets.point[q][v];
+    on_facet(q, 2) = 1 - on_facet(q, 0) - on_facet(q, 1);
+    weights(q) = 2 * on_facets.weight[q];
   }
   Kokkos::deep_copy(in.on_facet, on_facet);
   Kokkos::deep_copy(in.facet_weight, weights);
@@ -290,13 +286,12 @@ WorkOfHexahedra work_of_hexahedra(const HexahedraInput &in, const Comm &comm, co
       KOKKOS_LAMBDA(const LO c, double &energy, double &of_force) {
         const AffineTetrahedron cell(in, c);
         const double lambda = in.lame(in.block(c), 0), mu = in.lame(in.block(c), 1);
+        const FieldOfHexahedra::Here here(u, cell, c);
         for (int q = 0; q < static_cast<int>(in.whole_weight.extent(0)); ++q) {
           const double at[4] = {in.in_whole(q, 0), in.in_whole(q, 1), in.in_whole(q, 2), in.in_whole(q, 3)};
-          double value[3], H[3][3], D[3][3], sigma[3][3];
-          u.at(c, at, value, H);
-          for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j)
-              D[i][j] = H[i][0] * cell.inverse[0][j] + H[i][1] * cell.inverse[1][j] + H[i][2] * cell.inverse[2][j];
+          double value[3] = {}, D[3][3], sigma[3][3];
+          if (in.loaded()) here.value(at, value);
+          here.gradient(at, D);
           stress_of_gradient(lambda, mu, D, sigma);
           const double w = in.whole_weight(q) * cell.determinant;
           for (int i = 0; i < 3; ++i) {

@@ -59,47 +59,7 @@ struct FieldOfHexahedra {
   ReadDisplacement u;    ///< (overlap dofs) at the vertices
   ReadDisplacement flat; ///< (overlap dofs) what is flattened on flat sides; of u itself, or of a part of it
   bool flattened = true;
-  static constexpr bool is_linear = false;
 
-  /// Values and derivatives by the coordinates of the tetrahedron at a place of it.
-  KOKKOS_FUNCTION void at(const LO c, const double (&lambda)[4], double (&value)[3], double (&H)[3][3]) const
-  {
-    double vertex[4][3], x[3] = {};
-    for (int v = 0; v < 4; ++v) {
-      place_of(in.corner(c, v), vertex[v]);
-      for (int m = 0; m < 3; ++m) x[m] += lambda[v] * vertex[v][m];
-    }
-    for (int i = 0; i < 3; ++i) {
-      value[i] = 0;
-      for (int l = 0; l < 3; ++l) H[i][l] = 0;
-    }
-    const LO h = c / 6;
-    for (int a = 0; a < 8; ++a) {
-      double p[3], N[3], dN[3];
-      place_of(a, p);
-      for (int m = 0; m < 3; ++m) N[m] = (1 + p[m] * x[m]) / 2;
-      for (int m = 0; m < 3; ++m) dN[m] = p[m] / 2 * N[(m + 1) % 3] * N[(m + 2) % 3];
-      for (int i = 0; i < 3; ++i) {
-        const double ui = u(dof(3, in.hexahedra(h, a), i));
-        value[i] += N[0] * N[1] * N[2] * ui;
-        for (int l = 0; l < 3; ++l)
-          for (int m = 0; m < 3; ++m) H[i][l] += ui * dN[m] * (vertex[l + 1][m] - vertex[0][m]);
-      }
-    }
-    for (int e = 0; flattened && e < 6; ++e) {
-      if (in.flat(c, e, 0) < 0) continue;
-      const int a = e < 3 ? 0 : (e < 5 ? 1 : 2), b = e < 3 ? e + 1 : (e < 5 ? e - 1 : 3);
-      for (int i = 0; i < 3; ++i) {
-        const double bend = flat(dof(3, in.cells(c, a), i)) + flat(dof(3, in.cells(c, b), i)) -
-                            flat(dof(3, in.flat(c, e, 0), i)) - flat(dof(3, in.flat(c, e, 1), i));
-        value[i] += bend * lambda[a] * lambda[b];
-        for (int l = 0; l < 3; ++l) {
-          const double da = a == 0 ? -1 : (a == l + 1 ? 1 : 0), db = b == l + 1 ? 1 : 0;
-          H[i][l] += bend * (da * lambda[b] + lambda[a] * db);
-        }
-      }
-    }
-  }
   /// Where a vertex of the reference hexahedron lies.
   static KOKKOS_INLINE_FUNCTION void place_of(const int vertex, double (&x)[3])
   {
@@ -107,22 +67,104 @@ struct FieldOfHexahedra {
     x[1] = vertex % 4 >= 2 ? 1 : -1;
     x[2] = vertex >= 4 ? 1 : -1;
   }
-  /// du_i / dx_j there.
-  KOKKOS_FUNCTION void gradient_there(const AffineTetrahedron &cell, const LO c, const double (&lambda)[4],
-                                      double (&D)[3][3]) const
-  {
-    double value[3], H[3][3];
-    at(c, lambda, value, H);
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        D[i][j] = H[i][0] * cell.inverse[0][j] + H[i][1] * cell.inverse[1][j] + H[i][2] * cell.inverse[2][j];
-  }
-  KOKKOS_FUNCTION void gradient_at(const AffineTetrahedron &cell, const LO c, const int s, const int q,
-                                   double (&D)[3][3]) const
-  {
-    const double lambda[4] = {in.at(s, q, 0), in.at(s, q, 1), in.at(s, q, 2), in.at(s, q, 3)};
-    gradient_there(cell, c, lambda, D);
-  }
+
+  /// In one tetrahedron.
+  struct Here {
+    static constexpr bool is_linear = false;
+    const HexahedraInput &in;
+    double of_power
+        [8]
+        [3]; ///< coefficients of the powers x^a y^b z^c of the place in the hexahedron, a + 2 b + 4 c, with a, b, c = 0, 1
+    double vertex[4][3]; ///< of the tetrahedron in the hexahedron
+    double slope[4][3];  ///< derivatives of the barycentric coordinates
+    double map[3][3];    ///< of the place in the hexahedron
+    double bend[6][3];   ///< of edges 01 02 03 12 13 23
+    bool bends[6];
+
+    KOKKOS_FUNCTION Here(const FieldOfHexahedra &field, const AffineTetrahedron &cell, const LO c) : in(field.in)
+    {
+      constexpr int corner[8] = {0, 1, 3, 2, 4, 5, 7, 6}; // by the signs of its place
+      for (int k = 0; k < 8; ++k)
+        for (int i = 0; i < 3; ++i) of_power[k][i] = field.u(dof(3, in.hexahedra(c / 6, corner[k]), i));
+      for (int bit = 1; bit < 8; bit *= 2)
+        for (int k = 0; k < 8; ++k)
+          for (int i = 0; i < 3 && !(k & bit); ++i) {
+            const double low = of_power[k][i], high = of_power[k | bit][i];
+            of_power[k][i] = (high + low) / 2;
+            of_power[k | bit][i] = (high - low) / 2;
+          }
+      for (int v = 0; v < 4; ++v) place_of(in.corner(c, v), vertex[v]);
+      for (int j = 0; j < 3; ++j) {
+        slope[0][j] = -(cell.inverse[0][j] + cell.inverse[1][j] + cell.inverse[2][j]);
+        for (int l = 0; l < 3; ++l) slope[l + 1][j] = cell.inverse[l][j];
+        for (int m = 0; m < 3; ++m) {
+          map[m][j] = 0;
+          for (int v = 0; v < 4; ++v) map[m][j] += vertex[v][m] * slope[v][j];
+        }
+      }
+      for (int e = 0; e < 6; ++e) {
+        int a, b;
+        ends_of(e, a, b);
+        bends[e] = field.flattened && in.flat(c, e, 0) >= 0;
+        for (int i = 0; i < 3 && bends[e]; ++i)
+          bend[e][i] = field.flat(dof(3, in.cells(c, a), i)) + field.flat(dof(3, in.cells(c, b), i)) -
+                       field.flat(dof(3, in.flat(c, e, 0), i)) - field.flat(dof(3, in.flat(c, e, 1), i));
+      }
+    }
+    static KOKKOS_INLINE_FUNCTION void ends_of(const int e, int &a, int &b)
+    {
+      a = e < 3 ? 0 : (e < 5 ? 1 : 2);
+      b = e < 3 ? e + 1 : (e < 5 ? e - 1 : 3);
+    }
+    KOKKOS_INLINE_FUNCTION void place(const double (&lambda)[4], double (&x)[3]) const
+    {
+      for (int m = 0; m < 3; ++m)
+        x[m] =
+            lambda[0] * vertex[0][m] + lambda[1] * vertex[1][m] + lambda[2] * vertex[2][m] + lambda[3] * vertex[3][m];
+    }
+    KOKKOS_INLINE_FUNCTION void value(const double (&lambda)[4], double (&u)[3]) const
+    {
+      double x[3];
+      place(lambda, x);
+      const auto &c = of_power;
+      for (int i = 0; i < 3; ++i)
+        u[i] = c[0][i] + x[0] * (c[1][i] + x[1] * (c[3][i] + x[2] * c[7][i]) + x[2] * c[5][i]) +
+               x[1] * (c[2][i] + x[2] * c[6][i]) + x[2] * c[4][i];
+      for (int e = 0; e < 6; ++e) {
+        int a, b;
+        ends_of(e, a, b);
+        for (int i = 0; i < 3 && bends[e]; ++i) u[i] += bend[e][i] * lambda[a] * lambda[b];
+      }
+    }
+    /// du_i / dx_j.
+    KOKKOS_INLINE_FUNCTION void gradient(const double (&lambda)[4], double (&D)[3][3]) const
+    {
+      double x[3];
+      place(lambda, x);
+      const auto &c = of_power;
+      for (int i = 0; i < 3; ++i) {
+        const double by[3] = {c[1][i] + x[1] * c[3][i] + x[2] * (c[5][i] + x[1] * c[7][i]),
+                              c[2][i] + x[0] * c[3][i] + x[2] * (c[6][i] + x[0] * c[7][i]),
+                              c[4][i] + x[0] * c[5][i] + x[1] * (c[6][i] + x[0] * c[7][i])};
+        for (int j = 0; j < 3; ++j) D[i][j] = by[0] * map[0][j] + by[1] * map[1][j] + by[2] * map[2][j];
+      }
+      for (int e = 0; e < 6; ++e) {
+        if (!bends[e]) continue;
+        int a, b;
+        ends_of(e, a, b);
+        for (int j = 0; j < 3; ++j) {
+          const double product = slope[a][j] * lambda[b] + lambda[a] * slope[b][j];
+          for (int i = 0; i < 3; ++i) D[i][j] += bend[e][i] * product;
+        }
+      }
+    }
+    /// At a point of a part.
+    KOKKOS_INLINE_FUNCTION void gradient(const int s, const int q, double (&D)[3][3]) const
+    {
+      const double lambda[4] = {in.at(s, q, 0), in.at(s, q, 1), in.at(s, q, 2), in.at(s, q, 3)};
+      gradient(lambda, D);
+    }
+  };
 };
 /// The displacement of the vertices. @param u  (overlap dofs)
 FieldOfHexahedra field_of_hexahedra(const HexahedraInput &in, const Vector &u);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "reference_stress.hpp"
 
+#include "float_products.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/fem/basis.hpp"
 #include "rpc/mesh/quadrature.hpp"
@@ -66,6 +67,21 @@ EnergyTable energies(const SplitCell &c, const Dense &stress)
   }
   Kokkos::deep_copy(table, host);
   return table;
+}
+
+/// The rows of the lower triangles, one after another.
+Kokkos::View<double **, Kokkos::LayoutRight, Device> lower_rows(const EnergyTable &table)
+{
+  const std::size_t n = table.extent(1);
+  Kokkos::View<double **, Kokkos::LayoutRight, Device> lower("rpc::bound::lower_energy", table.extent(0),
+                                                             row_of_triangle(n));
+  const auto from = to_host(table);
+  const auto to = Kokkos::create_mirror_view(lower);
+  for (std::size_t p = 0; p < table.extent(0); ++p)
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j <= i; ++j) to(p, row_of_triangle(i) + j) = from(p, i, j);
+  Kokkos::deep_copy(lower, to);
+  return lower;
 }
 
 /// Stresses without divergence.
@@ -145,6 +161,7 @@ ReferenceStress reference_stress(const mesh::Element &element)
   r.stress = table_of(all, "rpc::bound::stress");
   r.by_column = table_of<decltype(r.by_column)>(transposed(all), "rpc::bound::by_column");
   r.energy = energies(c, all);
+  if (c.dim == 3) r.lower_energy = lower_rows(r.energy);
   const PartPoints points = points_of_squares(element, c);
   const int per_part = static_cast<int>(points.weight.size()) / c.sides;
   r.value = DeviceView<double ***>("rpc::bound::value", c.sides, per_part, c.monomials);

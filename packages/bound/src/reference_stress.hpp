@@ -33,6 +33,8 @@ struct ReferenceStress {
   Kokkos::View<double **, Kokkos::LayoutRight, Device> by_column;
   /// (pairs, columns, columns) int s_c t_d, symmetric, of components cd = 00 11 .. 01 02 .. 12 ..
   EnergyTable energy;
+  /// (pairs, rows of the lower triangle) The same in space.
+  Kokkos::View<double **, Kokkos::LayoutRight, Device> lower_energy;
   DeviceView<double ***> moment;    ///< (components, dim, columns) int s_c X_l, with X relative to the centre
   DeviceView<double ***> value;     ///< (sides, points, monomials) in the part at each side
   DeviceView<double **> weight;     ///< (sides, points) of integrals over the reference cell

@@ -36,7 +36,7 @@ struct MakeFormsOfRevolution {
 
   KOKKOS_FUNCTION void operator()(const LO c) const
   {
-    const int nt = in.reference.tractions, k = in.reference.degree;
+    const int nt = in.reference.tractions;
     RevolutionEnergy e(in, u, c);
     e.factor();
     double reduced[ReferenceStress::most_tractions][ReferenceStress::most_tractions],
@@ -58,18 +58,15 @@ struct MakeFormsOfRevolution {
     }
     const auto &G = e.cell.inverse;
     for (int p = 0; p < nt / 2; ++p) {
-      const double of_p = side_factor(in.facets.sign(c, p / (k + 1)), p % (k + 1));
-      for (int q = 0; q < nt / 2; ++q) {
-        const double factor = of_p * side_factor(in.facets.sign(c, q / (k + 1)), q % (k + 1));
+      for (int q = 0; q <= p; ++q)
         for (int i = 0; i < 2; ++i)
-          for (int j = 0; j < 2; ++j) {
+          for (int j = 0; j < 2 && 2 * q + j <= 2 * p + i; ++j) {
             double sum = 0;
             for (int a = 0; a < 2; ++a)
               for (int b = 0; b < 2; ++b) sum += G[a][i] * reduced[2 * p + a][2 * q + b] * G[b][j];
-            out.A(c, 2 * p + i, 2 * q + j) = factor * sum;
+            out.A(c, row_of_triangle(2 * p + i) + 2 * q + j) = sum;
           }
-      }
-      for (int i = 0; i < 2; ++i) out.b(c, 2 * p + i) = of_p * (G[0][i] * linear[2 * p] + G[1][i] * linear[2 * p + 1]);
+      for (int i = 0; i < 2; ++i) out.b(c, 2 * p + i) = G[0][i] * linear[2 * p] + G[1][i] * linear[2 * p + 1];
     }
   }
 };
@@ -122,9 +119,7 @@ struct DifferenceOfRevolution {
 
 CellForms forms_of_revolution(const CellInput &in, const Vector &u)
 {
-  const int nt = in.reference.tractions;
-  CellForms forms{DeviceView<double ***>("rpc::bound::A", in.num_cells(), nt, nt),
-                  DeviceView<double **>("rpc::bound::b", in.num_cells(), nt)};
+  const CellForms forms(in);
   Kokkos::parallel_for("rpc::bound::make_forms_of_revolution", device_range(in.num_cells()),
                        MakeFormsOfRevolution{in, device_read(u), forms});
   Kokkos::fence();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ring_kinds.hpp"
 
-#include <map>
+#include <vector>
 
 namespace rpc::bound
 {
@@ -45,8 +45,11 @@ DeviceView<unsigned char *> free_components(const SpaceInput &in, const Boundary
   return free;
 }
 
-RingKinds ring_kinds(const SpaceInput &in, const DeviceView<unsigned char *> &free)
+Kinds ring_kinds(const SpaceInput &in, const DeviceView<unsigned char *> &free)
 {
+  const LO rings = in.facets.num_rings();
+  Kinds kinds = all_different(rings);
+  if (all_differ(in)) return kinds;
   const auto cells = to_host(in.facets.ring_cell), facets = to_host(in.facets.ring_facet);
   const auto toward = to_host(in.facets.toward);
   const auto first = to_host(in.facets.first);
@@ -54,40 +57,26 @@ RingKinds ring_kinds(const SpaceInput &in, const DeviceView<unsigned char *> &fr
   const auto cell = to_host(in.facets.cell);
   const auto ordinal = to_host(in.facets.ordinal);
   const auto on_host = to_host(free);
-  RingKinds kinds;
-  kinds.kind = DeviceView<int *>("rpc::bound::kind", in.facets.num_rings());
   const auto kind = Kokkos::create_mirror_view(kinds.kind);
-  std::map<std::vector<int>, int> found;
+  Found<int> found;
   std::vector<int> key;
-  const bool all_differ = 2 * in.example.extent(0) > static_cast<std::size_t>(in.num_cells());
-  for (LO ring = 0; ring < in.facets.num_rings(); ++ring) {
+  for (LO ring = 0; ring < rings; ++ring) {
     key.clear();
-    if (all_differ) {
-      kind(ring) = ring;
-      kinds.example.push_back(ring);
-      continue;
-    }
     const std::size_t begin = first(ring);
     const int n = static_cast<int>(first(ring + 1) - begin);
     for (int k = 0; k < count(ring); ++k) {
       const LO f = facets(begin + ring + k);
-      if (k < n) {
-        const LO c = cells(begin + k);
-        key.push_back(of_cell(c));
-        key.push_back(ordinal(f, cell(f, 0) == c ? 0 : 1));
-      }
-      if (k > 0) {
-        const LO c = cells(begin + k - 1);
-        key.push_back(ordinal(f, cell(f, 0) == c ? 0 : 1));
-      }
-      key.push_back(toward(begin + ring + k));
-      key.push_back(on_host(f));
+      const auto ordinal_in = [&](const int of) { // 4: there is no such cell
+        if (of < 0 || of >= n) return 4;
+        return static_cast<int>(ordinal(f, cell(f, 0) == cells(begin + of) ? 0 : 1));
+      };
+      key.push_back(k < n ? of_cell(cells(begin + k)) : -1);
+      key.push_back(((on_host(f) * 5 + ordinal_in(k)) * 5 + ordinal_in(k - 1)) * 2 + (toward(begin + ring + k) > 0));
     }
-    const auto [at, is_new] = found.try_emplace(key, static_cast<int>(found.size()));
-    kind(ring) = at->second;
-    if (is_new) kinds.example.push_back(ring);
+    kind(ring) = found(key, ring);
   }
   Kokkos::deep_copy(kinds.kind, kind);
+  kinds.example = device_values(found.example, "rpc::bound::example");
   return kinds;
 }
 

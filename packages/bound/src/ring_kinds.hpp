@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "cell_kinds.hpp"
 #include "equilibration.hpp"
 #include "space_stress.hpp"
-
-#include <vector>
 
 namespace rpc::bound
 {
@@ -13,12 +12,8 @@ namespace rpc::bound
 DeviceView<unsigned char *> free_components(const SpaceInput &in, const BoundaryTractions &boundary,
                                             const SlotExchange &of_facets);
 
-/// Kinds of rings, and a ring of each.
-struct RingKinds {
-  DeviceView<int *> kind;
-  std::vector<LO> example;
-};
+/// Rings of cells of the same kinds in the same places.
 /// @param free  free_components()
-RingKinds ring_kinds(const SpaceInput &in, const DeviceView<unsigned char *> &free);
+Kinds ring_kinds(const SpaceInput &in, const DeviceView<unsigned char *> &free);
 
 } // namespace rpc::bound

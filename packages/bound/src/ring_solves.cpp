@@ -18,104 +18,103 @@ template <int K>
 struct InvertRings {
   using Modes = RingModes<K>;
   using Sizes = SpaceSizes<K>;
+  static constexpr int per_facet = Sizes::per_facet, both = Modes::all;
+  static constexpr int linear = 9; // tractions, and modes, of degree 0 and 1; others are modes as they are
   Modes modes;
   SpaceForms forms;
   DeviceView<LO *> example;        // (kinds) ring
   DeviceView<std::size_t *> first; // (kinds)
   DeviceView<float *> inverse;
-  DeviceView<double *> work; // of the kinds from `from` on
+  DeviceView<double *> work;              // of the kinds from `from` on: whole matrices
+  DeviceView<std::size_t *> first_matrix; // (kinds)
   LO from;
 
-  KOKKOS_FUNCTION void add_cell(const LO ring, const int k, const int n, double *H) const
+  /// The modes at a facet of a ring: (tractions, modes) those of degree 1, and a factor of the others for each component of the traction.
+  struct AtFacet {
+    double linear_part[linear][linear], of_other[3];
+  };
+  KOKKOS_FUNCTION AtFacet at_facet(const LO ring, const RingFrame &frame, const int k) const
   {
-    constexpr int per_facet = Sizes::per_facet, both = Modes::all;
+    AtFacet at;
+    const LO f = modes.in.facets.ring_facet(modes.in.facets.first_facet(ring) + k);
+    const FacetModes<K> of_facet(modes, f);
+    const double toward = modes.toward(ring, k);
+    const ModesAtFacet<K> here(frame, of_facet.frame.centre, toward);
+    for (int mode = 0; mode < linear; ++mode) {
+      double y[both] = {}, t[per_facet];
+      y[mode] = 1;
+      FacetShare<K> share;
+      here.expand(y, y + 6, share);
+      of_facet.expand(share, t);
+      for (int p = 0; p < linear; ++p) at.linear_part[p][mode] = t[p];
+    }
+    for (int i = 0; i < 3; ++i) at.of_other[i] = of_facet.components >> i & 1 ? toward : 0;
+    return at;
+  }
+
+  /// What a cell between the facets k and the next one adds.
+  KOKKOS_FUNCTION void add_cell(const LO ring, const int k, const int n, const AtFacet &here, const AtFacet &next,
+                                double *H) const
+  {
     const SpaceInput &in = modes.in;
     const int facets = in.facets.num_ring_facets(ring), of_ring[2] = {k, (k + 1) % facets};
     const LO c = in.facets.ring_cell(in.facets.first(ring) + k);
     const int kind = in.kind(c);
+    const AtFacet *const at[2] = {&here, &next};
     int ordinal[2];
-    double M[2][per_facet][both], AM[per_facet][both];
+    double sign[2];
     for (int s = 0; s < 2; ++s) {
       const LO f = in.facets.ring_facet(in.facets.first_facet(ring) + of_ring[s]);
-      const double sign = in.facets.cell(f, 0) == c ? 1 : -1;
       ordinal[s] = in.facets.ordinal(f, in.facets.cell(f, 0) == c ? 0 : 1);
-      const FacetModes<K> of_facet(modes, f);
-      const ModesAtFacet<K> at(RingFrame(modes, ring), of_facet.frame.centre, modes.toward(ring, of_ring[s]));
-      for (int mode = 0; mode < both; ++mode) {
-        double y[both] = {}, t[per_facet];
-        y[mode] = 1;
-        FacetShare<K> share;
-        at.expand(y, y + 6, share);
-        of_facet.expand(share, t);
-        for (int p = 0; p < per_facet; ++p) M[s][p][mode] = sign * t[p];
-      }
+      sign[s] = in.facets.cell(f, 0) == c ? 1 : -1;
     }
-    for (int r = 0; r < 2; ++r)
-      for (int s = 0; s < 2; ++s) {
+    for (int s = 0; s < 2; ++s)
+      for (int r = 0; r <= s; ++r) {
+        double AM[per_facet][both], X[both][both];
         for (int p = 0; p < per_facet; ++p) {
-          for (int b = 0; b < both; ++b) AM[p][b] = 0;
-          for (int q = 0; q < per_facet; ++q) {
-            const double a = forms.A(kind, ordinal[s] * per_facet + p, ordinal[r] * per_facet + q);
-            for (int b = 0; b < both; ++b) AM[p][b] += a * M[r][q][b];
+          double a[per_facet];
+          for (int q = 0; q < per_facet; ++q)
+            a[q] = sign[s] * sign[r] *
+                   forms.second(kind, Sizes::tractions, ordinal[s] * per_facet + p, ordinal[r] * per_facet + q);
+          for (int b = 0; b < linear; ++b) AM[p][b] = 0;
+          for (int q = 0; q < linear; ++q)
+            for (int b = 0; b < linear; ++b) AM[p][b] += a[q] * at[r]->linear_part[q][b];
+          for (int b = linear; b < both; ++b) AM[p][b] = a[b] * at[r]->of_other[b % 3];
+        }
+        for (int i = 0; i < linear; ++i) {
+          for (int b = 0; b < both; ++b) X[i][b] = 0;
+          for (int p = 0; p < linear; ++p)
+            for (int b = 0; b < both; ++b) X[i][b] += at[s]->linear_part[p][i] * AM[p][b];
+        }
+        for (int i = linear; i < both; ++i)
+          for (int b = 0; b < both; ++b) X[i][b] = at[s]->of_other[i % 3] * AM[i][b];
+        for (int i = 0; i < both; ++i)
+          for (int b = 0; b < both; ++b) { // the inverse is made of the lower triangle
+            const int row = modes.place(of_ring[s], i), column = modes.place(of_ring[r], b);
+            if (row >= column) H[column * n + row] += X[i][b];
+            if (r < s && column >= row) H[row * n + column] += X[i][b]; // its mirror image
           }
-        }
-        for (int a = 0; a < both; ++a) {
-          double row[both] = {};
-          for (int p = 0; p < per_facet; ++p)
-            for (int b = 0; b < both; ++b) row[b] += M[s][p][a] * AM[p][b];
-          const int i = modes.place(of_ring[s], a);
-          for (int b = 0; b < both; ++b) H[modes.place(of_ring[r], b) * n + i] += row[b];
-        }
       }
   }
 
   KOKKOS_FUNCTION void operator()(const LO of_batch) const
   {
     const LO kind = from + of_batch, ring = example(kind);
-    const int n = modes.size(ring);
-    double *const H = work.data() + (first(kind) - first(from));
+    const int n = modes.size(ring), facets = modes.in.facets.num_ring_facets(ring);
+    double *const H = work.data() + (first_matrix(kind) - first_matrix(from));
     for (int i = 0; i < n * n; ++i) H[i] = 0;
-    for (int k = 0; k < modes.in.facets.num_ring_cells(ring); ++k) add_cell(ring, k, n, H);
-    invert(n, H);
-    float *const result = inverse.data() + first(kind);
+    const RingFrame frame(modes, ring);
+    AtFacet here = at_facet(ring, frame, 0);
+    for (int k = 0; k < modes.in.facets.num_ring_cells(ring); ++k) {
+      const AtFacet next = at_facet(ring, frame, (k + 1) % facets);
+      add_cell(ring, k, n, here, next, H);
+      here = next;
+    }
+    FloatProducts::invert(n, H);
+    float *result = inverse.data() + first(kind);
     for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) result[j * n + i] = static_cast<float>(H[(i < j ? i : j) * n + (i < j ? j : i)]);
-  }
-
-  /// The lower part of the inverse, in place; 0 in rows of modes that are not there. Column j lies at j n.
-  KOKKOS_FUNCTION static void invert(const int n, double *H)
-  {
-    for (int j = 0; j < n; ++j) { // Cholesky's factor
-      double *const column = H + j * n;
-      const double own = column[j];
-      for (int k = 0; k < j; ++k) {
-        const double by = H[k * n + j];
-        for (int i = j; by != 0 && i < n; ++i) column[i] -= H[k * n + i] * by;
-      }
-      if (!(column[j] > 1e-12 * own)) {
-        for (int i = j; i < n; ++i) column[i] = 0;
-        for (int k = 0; k < j; ++k) H[k * n + j] = 0;
-        continue;
-      }
-      const double pivot = math::sqrt(column[j]);
-      for (int i = j; i < n; ++i) column[i] /= pivot;
-    }
-    for (int j = n - 1; j >= 0; --j) { // its inverse M: column j from those after it
-      double *const column = H + j * n;
-      const double own = column[j] > 0 ? 1 / column[j] : 0;
-      column[j] = own;
-      for (int i = n - 1; i > j; --i) {
-        double sum = 0;
-        for (int k = j + 1; k <= i; ++k) sum += H[k * n + i] * column[k];
-        column[i] = -own * sum;
-      }
-    }
-    for (int i = 0; i < n; ++i) // M^T M
-      for (int j = 0; j <= i; ++j) {
-        double sum = 0;
-        for (int k = i; k < n; ++k) sum += H[i * n + k] * H[j * n + k];
-        H[j * n + i] = sum;
-      }
+      for (int i = 0; i < (forms.lower ? j + 1 : n); ++i)
+        *result++ = static_cast<float>(i < j ? H[j * n + i] : H[i * n + j]);
   }
 };
 
@@ -151,6 +150,7 @@ struct SolveRings {
   DeviceView<std::size_t *> first;
   DeviceView<float *> inverse, answer, shares;
   DeviceView<float *> large; // (modes) work space for rings of more modes than usual; empty if there are none
+  bool lower;                // whether inverses are the rows of lower triangles
 
   static constexpr int usual = 256; // modes of 83 facets of order 1
   /// @param work  += that of the answer with the derivative
@@ -185,7 +185,8 @@ struct SolveRings {
       for (int m = 0; m < own; ++m) r[modes.place(k, 6 + m)] = static_cast<float>(of_facet[m]);
     }
     for (int i = 0; i < 6; ++i) r[i] = static_cast<float>(common[i]);
-    work += FloatProducts::of_ring(inverse.data() + first(kind(ring)), r, n, y);
+    const float *const of_kind = inverse.data() + first(kind(ring));
+    work += lower ? FloatProducts::of_lower(of_kind, r, n, y) : FloatProducts::of_ring(of_kind, r, n, y);
     const float by = static_cast<float>(frame.unit), over = static_cast<float>(1 / frame.unit);
     for (int i = 3; i < 6; ++i) y[i] *= by;
     for (int k = 0; k < facets; ++k)
@@ -280,49 +281,6 @@ struct GatherRings {
 
 } // namespace
 
-RingSolves::RingSolves(const SpaceInput &in, const BoundaryTractions &boundary, const SpaceForms &forms,
-                       const SpaceExchanges &exchanges)
-    : in_(in), exchanges_(exchanges), free_(free_components(in, boundary, exchanges.of_facets))
-{
-  const RingKinds kinds = ring_kinds(in, free_);
-  kind_ = kinds.kind;
-  const int per_facet = in.reference.tractions / 4, own = per_facet - 6;
-  const auto count = to_host(in.facets.num_ring_facets);
-  DeviceView<LO *> example("rpc::bound::example", kinds.example.size());
-  first_ = DeviceView<std::size_t *>("rpc::bound::first", kinds.example.size());
-  const auto examples = Kokkos::create_mirror_view(example);
-  const auto first = Kokkos::create_mirror_view(first_);
-  std::size_t total = 0, most = 0;
-  for (std::size_t k = 0; k < kinds.example.size(); ++k) {
-    examples(k) = kinds.example[k];
-    first(k) = total;
-    const std::size_t n = 6 + own * count(kinds.example[k]);
-    total += n * n;
-    most = std::max(most, n);
-  }
-  Kokkos::deep_copy(example, examples);
-  Kokkos::deep_copy(first_, first);
-  inverse_ = DeviceView<float *>(Kokkos::view_alloc("rpc::bound::inverse", Kokkos::WithoutInitializing), total);
-  const std::size_t of_rings =
-      6 * static_cast<std::size_t>(in.facets.num_rings()) + own * in.facets.ring_facet.extent(0);
-  size_ = static_cast<std::size_t>(in.facets.size()) * per_facet;
-  answer_ = DeviceView<float *>("rpc::bound::answer", std::max(of_rings, size_));
-  if (most > SolveRings<1>::usual) large_ = DeviceView<float *>("rpc::bound::large", of_rings);
-  constexpr LO batch = 1024; // kinds at once: what bounds the work space
-  const LO num_kinds = static_cast<LO>(kinds.example.size());
-  for (LO from = 0; from < num_kinds; from += batch) {
-    const LO to = std::min(num_kinds, from + batch);
-    const DeviceView<double *> work("rpc::bound::work", (to < num_kinds ? first(to) : total) - first(from));
-    if (in.reference.degree == 1)
-      Kokkos::parallel_for("rpc::bound::invert_rings", device_range(to - from),
-                           InvertRings<1>{{in, free_}, forms, example, first_, inverse_, work, from});
-    else
-      Kokkos::parallel_for("rpc::bound::invert_rings", device_range(to - from),
-                           InvertRings<2>{{in, free_}, forms, example, first_, inverse_, work, from});
-    Kokkos::fence();
-  }
-}
-
 template <class Function>
 void RingSolves::for_order(const Function &f) const
 {
@@ -330,6 +288,51 @@ void RingSolves::for_order(const Function &f) const
     f(std::integral_constant<int, 1>{});
   else
     f(std::integral_constant<int, 2>{});
+}
+
+RingSolves::RingSolves(const SpaceInput &in, const BoundaryTractions &boundary, const SpaceForms &forms,
+                       const SpaceExchanges &exchanges)
+    : in_(in), exchanges_(exchanges), free_(free_components(in, boundary, exchanges.of_facets))
+{
+  const Kinds kinds = ring_kinds(in, free_);
+  kind_ = kinds.kind;
+  lower_ = forms.lower;
+  const int per_facet = in.reference.tractions / 4, own = per_facet - 6;
+  const auto count = to_host(in.facets.num_ring_facets);
+  const auto example = to_host(kinds.example);
+  const LO num_kinds = static_cast<LO>(example.extent(0));
+  first_ = DeviceView<std::size_t *>("rpc::bound::first", num_kinds);
+  const DeviceView<std::size_t *> first_matrix("rpc::bound::first_matrix", num_kinds);
+  const auto first = Kokkos::create_mirror_view(first_), matrix = Kokkos::create_mirror_view(first_matrix);
+  std::size_t total = 0, of_matrices = 0, most = 0;
+  for (LO k = 0; k < num_kinds; ++k) {
+    const std::size_t n = 6 + own * count(example(k));
+    first(k) = total;
+    matrix(k) = of_matrices;
+    total += lower_ ? row_of_triangle(n) : n * n;
+    of_matrices += n * n;
+    most = std::max(most, n);
+  }
+  Kokkos::deep_copy(first_, first);
+  Kokkos::deep_copy(first_matrix, matrix);
+  inverse_ = DeviceView<float *>(Kokkos::view_alloc("rpc::bound::inverse", Kokkos::WithoutInitializing), total);
+  const std::size_t of_rings =
+      6 * static_cast<std::size_t>(in.facets.num_rings()) + own * in.facets.ring_facet.extent(0);
+  size_ = static_cast<std::size_t>(in.facets.size()) * per_facet;
+  answer_ = DeviceView<float *>("rpc::bound::answer", std::max(of_rings, size_));
+  if (most > SolveRings<1>::usual) large_ = DeviceView<float *>("rpc::bound::large", of_rings);
+  constexpr LO batch = on_gpu ? 16384 : 128; // kinds at once: what bounds the work space, and what keeps a GPU busy
+  for (LO from = 0; from < num_kinds; from += batch) {
+    const LO to = std::min(num_kinds, from + batch);
+    const DeviceView<double *> work(Kokkos::view_alloc("rpc::bound::work", Kokkos::WithoutInitializing),
+                                    (to < num_kinds ? matrix(to) : of_matrices) - matrix(from));
+    for_order([&](const auto order) {
+      Kokkos::parallel_for(
+          "rpc::bound::invert_rings", device_range(to - from),
+          InvertRings<order.value>{{in, free_}, forms, kinds.example, first_, inverse_, work, first_matrix, from});
+    });
+    Kokkos::fence();
+  }
 }
 
 template <class Derivative>
@@ -350,7 +353,8 @@ double RingSolves::solve(const DeviceView<float *> &shares) const
   for_order([&](const auto order) {
     constexpr int k = order.value;
     Kokkos::parallel_reduce("rpc::bound::solve_rings", device_range(in_.facets.num_rings()),
-                            SolveRings<k>{{in_, free_}, kind_, first_, inverse_, answer_, shares, large_}, work);
+                            SolveRings<k>{{in_, free_}, kind_, first_, inverse_, answer_, shares, large_, lower_},
+                            work);
   });
   return work;
 }

@@ -44,6 +44,7 @@ private:
   DeviceView<float *> inverse_;      // it only steers the descent
   DeviceView<float *> answer_;       // (6 rings + modes of facets)
   DeviceView<float *> large_;        // as answer_, where a ring has many facets; else empty
+  bool lower_ = false;               // whether inverses are the rows of lower triangles
   std::size_t size_ = 0;             // of tractions
 };
 

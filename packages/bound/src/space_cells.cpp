@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "space_cells.hpp"
 
+#include "cell_kinds.hpp"
 #include "float_products.hpp"
 #include "hexahedra.hpp"
 #include "kind_difference.hpp"
@@ -46,6 +47,42 @@ KOKKOS_INLINE_FUNCTION void read_space_tractions(const SpaceInput &in, const Tra
   }
 }
 
+/// The integrals of products of a cell's stresses, by the compliance of their images: factors of the tables of pairs.
+KOKKOS_INLINE_FUNCTION void factors_of_pairs(const double (&S)[6][6], double (&factor)[21])
+{
+  int pair = 0;
+  for (int p = 0; p < 6; ++p) factor[pair++] = S[p][p];
+  for (int p = 0; p < 6; ++p)
+    for (int q = p + 1; q < 6; ++q) factor[pair++] = S[p][q];
+}
+
+/// First derivatives by tractions and inner stresses, from `first` on, that the body force adds in the reference cell.
+template <int K>
+KOKKOS_INLINE_FUNCTION void derivative_of_force(const SpaceInput &in, const AffineTetrahedron &cell,
+                                                const double (&S)[6][6], const int first,
+                                                double (&of_force)[SpaceSizes<K>::columns])
+{
+  double image[3][6];
+  image_of_force(in, cell, image);
+  for (int i = first; i < SpaceSizes<K>::columns; ++i) {
+    of_force[i] = 0;
+    for (int k = 0; k < 6; ++k)
+      for (int l = 0; l < 3; ++l)
+        for (int m = 0; m < 6; ++m) of_force[i] += in.reference.moment(k, l, i) * S[k][m] * image[l][m];
+  }
+}
+
+/// L^-1 x for inner stresses, by the rows that factor_inner() leaves.
+template <int K>
+KOKKOS_INLINE_FUNCTION void forward_inner(const double *row, double *const x)
+{
+  constexpr int nt = SpaceSizes<K>::tractions;
+  for (int i = nt; i < SpaceSizes<K>::columns; row += ++i) {
+    for (int k = nt; k < i; ++k) x[i] -= row[k] * x[k];
+    x[i] /= row[i];
+  }
+}
+
 /// Second and first derivatives of the energy of a kind of cells by their tractions.
 template <int K>
 struct MakeSpaceForms {
@@ -58,112 +95,69 @@ struct MakeSpaceForms {
     constexpr int nt = Sizes::tractions, n = Sizes::columns, nz = Sizes::inner;
     const LO c = in.example(kind);
     const AffineTetrahedron cell(in, c);
-    double S[6][6], A[n][n], of_force[n];
+    double S[6][6], factor[21], A[row_of_triangle(n)], of_force[n];
     compliance_of_images(in, cell, c, S);
-    double factor[pairs];
-    int pair = 0;
-    for (int p = 0; p < 6; ++p) factor[pair++] = S[p][p];
-    for (int p = 0; p < 6; ++p)
-      for (int q = p + 1; q < 6; ++q) factor[pair++] = S[p][q];
-    sum_energies(factor, A);
-    double image[3][6];
-    image_of_force(in, cell, image);
-    for (int i = 0; i < n; ++i) {
-      of_force[i] = 0;
-      for (int k = 0; in.loaded() && k < 6; ++k)
-        for (int l = 0; l < 3; ++l)
-          for (int m = 0; m < 6; ++m) of_force[i] += in.reference.moment(k, l, i) * S[k][m] * image[l][m];
+    factors_of_pairs(S, factor);
+    FloatProducts::sum_tables(in.reference.lower_energy.data(), in.reference.lower_energy.extent(1),
+                              static_cast<int>(row_of_triangle(n)), factor, A);
+    if (in.loaded()) derivative_of_force<K>(in, cell, S, 0, of_force);
+    if constexpr (nz > 0) { // at their best
+      double *const rows = A + row_of_triangle(nt);
+      FloatProducts::factor_inner(nt, n, rows);
+      FloatProducts::eliminate_inner(nt, n, A);
+      for (std::size_t k = 0; k < out.inner.extent(1); ++k) out.inner(kind, k) = rows[k];
+      if (in.loaded()) {
+        forward_inner<K>(rows, of_force);
+        for (int z = nt; z < n; ++z)
+          for (int r = 0; r < nt; ++r) of_force[r] -= A[row_of_triangle(z) + r] * of_force[z];
+      }
     }
-    if constexpr (nz > 0) eliminate_inner(kind, A, of_force);
     // From reference tractions to those of the facets: t^ = F^-1 t.
     const auto &G = cell.inverse;
     for (int p = 0; p < nt / 3; ++p)
-      for (int q = 0; q < nt / 3; ++q) {
-        double half[3][3];
+      for (int q = 0; q <= p; ++q) {
+        double block[3][3], half[3][3];
         for (int i = 0; i < 3; ++i)
-          for (int j = 0; j < 3; ++j) {
-            half[i][j] = 0;
-            for (int k = 0; k < 3; ++k) half[i][j] += A[3 * p + i][3 * q + k] * G[k][j];
-          }
+          for (int j = 0; j < 3; ++j)
+            block[i][j] =
+                p == q && i < j ? A[row_of_triangle(3 * q + j) + 3 * p + i] : A[row_of_triangle(3 * p + i) + 3 * q + j];
         for (int i = 0; i < 3; ++i)
-          for (int j = 0; j < 3; ++j) {
-            double sum = 0;
-            for (int k = 0; k < 3; ++k) sum += G[k][i] * half[k][j];
-            out.A(kind, 3 * p + i, 3 * q + j) = static_cast<float>(sum);
-            if (out.exact.extent(0) > 0) out.exact(kind, 3 * p + i, 3 * q + j) = sum;
-          }
+          for (int j = 0; j < 3; ++j)
+            half[i][j] = block[i][0] * G[0][j] + block[i][1] * G[1][j] + block[i][2] * G[2][j];
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j)
+            put(kind, 3 * p + i, 3 * q + j, G[0][i] * half[0][j] + G[1][i] * half[1][j] + G[2][i] * half[2][j]);
       }
+    if (!in.loaded()) return;
     for (int p = 0; p < nt / 3; ++p)
       for (int i = 0; i < 3; ++i) {
         double sum = 0;
         for (int k = 0; k < 3; ++k) sum += G[k][i] * of_force[3 * p + k];
         out.b(kind, 3 * p + i) = sum;
       }
-    for (int s = 0; in.loaded() && s < 4; ++s) {
+    for (int s = 0; s < 4; ++s) {
       double tau[3][3];
       traction_of_force(in, cell, c, s, tau);
       for (int j = 0; j < 3; ++j)
         for (int i = 0; i < 3; ++i) {
           const int at = s * Sizes::per_facet + 3 * j + i;
-          for (int p = 0; p < nt; ++p) out.b(kind, p) -= out.A(kind, p, at) * tau[j][i];
+          for (int p = 0; p < nt; ++p) out.b(kind, p) -= out.second(kind, nt, p, at) * tau[j][i];
         }
     }
   }
-
-  static constexpr int pairs = 21;
-  /// A <- the tables of pairs times factors, three at once.
-  KOKKOS_FUNCTION void sum_energies(const double (&factor)[pairs], double (&A)[Sizes::columns][Sizes::columns]) const
+  /// Of two entries that are alike the one in the lower triangle decides.
+  KOKKOS_FUNCTION void put(const LO kind, const int i, const int j, const double a) const
   {
-    constexpr int size = Sizes::columns * Sizes::columns;
-    const double *table = in.reference.energy.data();
-    double *const sum = &A[0][0];
-    for (int k = 0; k < size; ++k) sum[k] = 0;
-    for (int p = 0; p < pairs; p += 3, table += 3 * size)
-      for (int k = 0; k < size; ++k)
-        sum[k] += factor[p] * table[k] + factor[p + 1] * table[size + k] + factor[p + 2] * table[2 * size + k];
-  }
-  /// A and the force's part with the inner stresses at their best, which are kept.
-  KOKKOS_FUNCTION void eliminate_inner(const LO kind, double (&A)[Sizes::columns][Sizes::columns],
-                                       double (&of_force)[Sizes::columns]) const
-  {
-    constexpr int nt = Sizes::tractions, n = Sizes::columns;
-    for (int j = nt; j < n; ++j) {
-      for (int k = nt; k < j; ++k)
-        for (int i = j; i < n; ++i) A[i][j] -= A[i][k] * A[j][k];
-      const double pivot = math::sqrt(A[j][j]);
-      for (int i = j; i < n; ++i) A[i][j] /= pivot;
-    }
-    for (int t = 0; t <= nt; ++t) {
-      double x[Sizes::columns];
-      for (int i = nt; i < n; ++i) {
-        x[i] = t < nt ? A[t][i] : of_force[i];
-        for (int k = nt; k < i; ++k) x[i] -= A[i][k] * x[k];
-        x[i] /= A[i][i];
-      }
-      for (int i = n - 1; i >= nt; --i) {
-        for (int k = i + 1; k < n; ++k) x[i] -= A[k][i] * x[k];
-        x[i] /= A[i][i];
-      }
-      for (int i = nt; i < n; ++i) out.inner(kind, t, i - nt) = -x[i];
-      for (int r = 0; t == nt && r < nt; ++r)
-        for (int z = nt; z < n; ++z) of_force[r] -= A[r][z] * x[z];
-    }
-    for (int r = 0; r < nt; ++r)
-      for (int t = 0; t < nt; ++t)
-        for (int z = nt; z < n; ++z) A[r][t] += A[r][z] * out.inner(kind, t, z - nt);
+    constexpr int nt = Sizes::tractions;
+    if (i < j) return;
+    const auto rounded = static_cast<float>(a);
+    if (out.lower)
+      out.A(kind, row_of_triangle(i) + j) = rounded;
+    else
+      out.A(kind, i * nt + j) = out.A(kind, j * nt + i) = rounded;
+    if (out.exact.extent(0) > 0) out.exact(kind, i, j) = out.exact(kind, j, i) = a;
   }
 };
-
-/// target += one of two parts: their sum does not depend on which comes first.
-KOKKOS_INLINE_FUNCTION void add_part(float &target, const float part)
-{
-#ifdef KOKKOS_ENABLE_SERIAL
-  if constexpr (std::is_same_v<ExecutionSpace, Kokkos::Serial>)
-    target += part;
-  else
-#endif
-    Kokkos::atomic_add(&target, part);
-}
 
 /// A t, and with linear = true the first derivatives, in the signs of the facets.
 template <int K>
@@ -197,9 +191,9 @@ struct DerivativeOfCells {
         soon(out.data() + at);
       }
     }
-    const float *const A = forms.A.data() + static_cast<std::size_t>(kind) * nt * nt;
-    const double *const b = linear ? forms.b.data() + static_cast<std::size_t>(kind) * nt : nullptr;
-    const double product = FloatProducts::template of_cell<nt>(A, given, sign, b, y);
+    const float *const A = forms.A.data() + kind * forms.A.extent(1);
+    const double *const b = linear && in.loaded() ? forms.b.data() + static_cast<std::size_t>(kind) * nt : nullptr;
+    const double product = FloatProducts::template of_cell<nt>(A, forms.lower, given, sign, b, y);
     if (c < in.num_owned_cells) work += product;
     for (int s = 0; s < 4; ++s) {
       float *const to = out.data() + from[s];
@@ -213,15 +207,26 @@ template <int K>
 struct TetrahedronField {
   SpaceInput in;
   ReadDisplacement u;
-  static constexpr bool is_linear = K == 1; ///< C eps is constant
 
-  /// du_i / dx_j at a point of a part.
-  KOKKOS_FUNCTION void gradient_at(const AffineTetrahedron &cell, const LO c, const int s, const int q,
-                                   double (&D)[3][3]) const
-  {
-    gradient_in_space(
-        in, cell, c, u, [&](const int a, const int l) { return in.reference.gradient(s, q, a, l); }, D);
-  }
+  /// In one tetrahedron.
+  struct Here {
+    static constexpr bool is_linear = K == 1; ///< the gradient is constant
+    const TetrahedronField &field;
+    const AffineTetrahedron &cell;
+    LO c;
+
+    KOKKOS_FUNCTION Here(const TetrahedronField &of, const AffineTetrahedron &in, const LO at)
+        : field(of), cell(in), c(at)
+    {
+    }
+    /// du_i / dx_j at a point of a part.
+    KOKKOS_FUNCTION void gradient(const int s, const int q, double (&D)[3][3]) const
+    {
+      gradient_in_space(
+          field.in, cell, c, field.u, [&](const int a, const int l) { return field.in.reference.gradient(s, q, a, l); },
+          D);
+    }
+  };
 };
 
 /// Energy and balance of the stress of a tetrahedron.
@@ -249,6 +254,40 @@ struct SpaceDifference {
     balance.judge(imbalance, force);
   }
 
+  /// The inner stresses by the tractions of the image. Those of the kind will do: any are admissible.
+  KOKKOS_FUNCTION void best_inner(const LO c, const AffineTetrahedron &cell, double (&x)[Sizes::columns]) const
+  {
+    constexpr int nt = Sizes::tractions, n = Sizes::columns;
+    constexpr int size = static_cast<int>(row_of_triangle(n) - row_of_triangle(nt));
+    double S[6][6], factor[21], found[size];
+    const bool of_kind = forms.inner.extent(0) > 0;
+    const double *const rows = of_kind ? forms.inner.data() + static_cast<std::size_t>(in.kind(c)) * size : found;
+    if (!of_kind || in.loaded()) compliance_of_images(in, cell, c, S);
+    if (!of_kind) {
+      factors_of_pairs(S, factor);
+      FloatProducts::sum_tables(in.reference.lower_energy.data() + row_of_triangle(nt),
+                                in.reference.lower_energy.extent(1), size, factor, found);
+      FloatProducts::factor_inner(nt, n, found);
+    }
+    for (int z = nt; z < n; ++z) x[z] = 0;
+    if (in.loaded()) {
+      derivative_of_force<K>(in, cell, S, nt, x);
+      forward_inner<K>(rows, x);
+    }
+    const double *row = rows;
+    for (int z = nt; z < n; row += ++z) {
+      double parts[4] = {};
+      for (int i = 0; i < nt; i += 4)
+        for (int k = 0; k < 4; ++k) parts[k] += row[i + k] * x[i + k];
+      for (const double part : parts) x[z] += part;
+    }
+    for (int i = n - 1; i >= nt; --i) {
+      row -= i + 1;
+      x[i] /= -row[i];
+      for (int k = nt; k < i; ++k) x[k] += row[k] * x[i];
+    }
+  }
+
   KOKKOS_FUNCTION void operator()(const LO c, double &sum, double &imbalance, double &force) const
   {
     constexpr int nt = Sizes::tractions, nm = Sizes::monomials, nz = Sizes::inner;
@@ -267,44 +306,42 @@ struct SpaceDifference {
       for (int i = 0; i < 3; ++i)
         x[3 * p + i] = cell.inverse[i][0] * y[0] + cell.inverse[i][1] * y[1] + cell.inverse[i][2] * y[2];
     }
-    if constexpr (nz > 0) { // those of the kind: any are admissible
-      const int kind = in.kind(c);
-      for (int z = 0; z < nz; ++z) {
-        x[nt + z] = in.loaded() ? forms.inner(kind, nt, z) : 0;
-        for (int i = 0; i < nt; ++i) x[nt + z] += forms.inner(kind, i, z) * x[i];
-      }
-    }
-    double coefficient[Sizes::coefficients], image[3][6];
+    if constexpr (nz > 0) best_inner(c, cell, x);
+    double coefficient[Sizes::coefficients];
     for (double &value : coefficient) value = 0;
     const double *column = in.reference.by_column.data();
     for (int i = 0; i < Sizes::columns; i += 2, column += 2 * Sizes::coefficients)
       for (int k = 0; k < Sizes::coefficients; ++k)
         coefficient[k] += column[k] * x[i] + column[Sizes::coefficients + k] * x[i + 1];
-    image_of_force(in, cell, image);
-    for (int s = 0; in.loaded() && s < 4; ++s)
-      for (int component = 0; component < 6; ++component)
-        for (int l = 0; l < 3; ++l) coefficient[(s * 6 + component) * nm + 1 + l] += image[l][component];
-    double S[6][6];
-    compliance_of_images(in, cell, c, S);
-    double energy = 0, of_u[6] = {};
-    for (int s = 0; s < 4; ++s)
+    double T[6][6], energy = 0, of_u[3][3] = {};
+    cell.stress_map(T);
+    const double lambda = in.lame(in.block(c), 0), mu = in.lame(in.block(c), 1), a = lambda / (3 * lambda + 2 * mu);
+    const typename Field::Here here(u, cell, c);
+    for (int s = 0; s < 4; ++s) {
+      double stress[6][nm] = {}; // by monomials
+      for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j)
+          for (int m = 0; m < nm; ++m) stress[i][m] += T[i][j] * coefficient[(s * 6 + j) * nm + m];
+      for (int i = 0; in.loaded() && i < 3; ++i)
+        for (int l = 0; l < 3; ++l) stress[i][1 + l] -= in.force[i] * cell.F[i][l];
       for (int q = 0; q < static_cast<int>(in.reference.weight.extent(1)); ++q) {
-        double D[3][3], sigma[3][3], off[6];
-        if (!Field::is_linear || q + s == 0) {
-          u.gradient_at(cell, c, s, q, D);
-          stress_of_gradient(in.lame(in.block(c), 0), in.lame(in.block(c), 1), D, sigma);
-          cell.image(sigma, of_u);
+        if (!Field::Here::is_linear || q + s == 0) {
+          double D[3][3];
+          here.gradient(s, q, D);
+          stress_of_gradient(lambda, mu, D, of_u);
         }
+        double off[6], squares = 0;
         for (int component = 0; component < 6; ++component) {
-          off[component] = -of_u[component];
-          for (int m = 0; m < nm; ++m)
-            off[component] += coefficient[(s * 6 + component) * nm + m] * in.reference.value(s, q, m);
+          int i, j;
+          AffineTetrahedron::entry(component, i, j);
+          off[component] = -of_u[i][j];
+          for (int m = 0; m < nm; ++m) off[component] += stress[component][m] * in.reference.value(s, q, m);
+          squares += (component < 3 ? 1 : 2) * off[component] * off[component];
         }
-        double density = 0;
-        for (int i = 0; i < 6; ++i)
-          for (int j = 0; j < 6; ++j) density += off[i] * S[i][j] * off[j];
-        energy += in.reference.weight(s, q) * density / 2;
+        const double trace = off[0] + off[1] + off[2];
+        energy += in.reference.weight(s, q) * cell.determinant * (squares - a * trace * trace) / (4 * mu); // (13.2)
       }
+    }
     of_cell(c) = energy;
     sum += energy;
   }
@@ -317,10 +354,14 @@ SpaceForms cell_forms(const SpaceInput &in, const Vector &u)
   const int nt = in.reference.tractions, kinds = static_cast<int>(in.example.extent(0)),
             functions = static_cast<int>(in.facets.node.extent(1));
   SpaceForms forms;
-  forms.A = decltype(forms.A)("rpc::bound::A", kinds, nt, nt);
+  forms.lower = all_differ(in);
+  forms.A = decltype(forms.A)(Kokkos::view_alloc("rpc::bound::A", Kokkos::WithoutInitializing), kinds,
+                              forms.lower ? row_of_triangle(nt) : static_cast<std::size_t>(nt) * nt);
   if (energies_by_kinds(in)) forms.exact = decltype(forms.exact)("rpc::bound::exact", kinds, nt, nt);
-  forms.b = decltype(forms.b)("rpc::bound::b", kinds, nt);
-  forms.inner = DeviceView<double ***>("rpc::bound::inner", kinds, nt + 1, in.reference.inner);
+  forms.b = decltype(forms.b)("rpc::bound::b", in.loaded() ? kinds : 0, nt);
+  if (!forms.lower && in.reference.inner > 0)
+    forms.inner = decltype(forms.inner)("rpc::bound::inner", kinds,
+                                        row_of_triangle(in.reference.columns()) - row_of_triangle(nt));
   forms.boundary =
       DeviceView<double *>("rpc::bound::boundary", static_cast<std::size_t>(in.facets.num_outer) * 3 * functions);
   for_order(in.reference.degree, [&](const auto order) {

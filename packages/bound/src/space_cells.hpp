@@ -12,14 +12,21 @@ namespace rpc::bound
 ///
 ///     E_T(t) = t . A t/2 + b . t + const.                                                             doc/bounds.md (13.8)
 struct SpaceForms {
-  /// (kinds, tractions, tractions), each of which lies in one piece; it only steers the descent
-  Kokkos::View<float ***, Kokkos::LayoutRight, Device> A;
-  /// The same in double precision, by which the bound itself is found; empty where there are too many kinds.
+  /// (kinds, numbers) It only steers the descent. The rows of the lower triangle if `lower`, else whole rows.
+  Kokkos::View<float **, Kokkos::LayoutRight, Device> A;
+  bool lower = false; ///< cells are all different: memory counts, and what is read once is not slower so
+  /// The same, whole, in double precision, by which the bound itself is found; empty where there are too many kinds.
   Kokkos::View<double ***, Kokkos::LayoutRight, Device> exact;
   Kokkos::View<double **, Kokkos::LayoutRight, Device> b; ///< (kinds, tractions) what the body force adds
-  DeviceView<double ***>
-      inner; ///< (kinds, tractions + 1, inner) the best inner stresses by tractions of the image; the last row is that of the body force
+  /// (kinds, numbers) Rows of the inner stresses as factor_inner() leaves them. Empty if `lower`, and where there are none.
+  Kokkos::View<double **, Kokkos::LayoutRight, Device> inner;
   DeviceView<double *> boundary; ///< (outer facets * polynomials * 3) what the displacement on the boundary adds
+
+  KOKKOS_INLINE_FUNCTION float second(const int kind, const int size, const int i, const int j) const
+  {
+    if (!lower) return A(kind, i * size + j);
+    return A(kind, i < j ? row_of_triangle(j) + i : row_of_triangle(i) + j);
+  }
 };
 /// @param u  (overlap dofs)
 SpaceForms cell_forms(const SpaceInput &in, const Vector &u);

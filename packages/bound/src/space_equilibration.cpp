@@ -226,7 +226,7 @@ Tractions equilibrated(const SpaceInput &in, const BoundaryTractions &boundary, 
       },
       total);
   const auto begins = to_host(first);
-  constexpr LO batch = 2048; // stars at once: what bounds the work space
+  constexpr LO batch = on_gpu ? 131072 : 2048; // stars at once: what bounds the work space, and what keeps a GPU busy
   const auto end_of = [&](const LO from) { return std::min(nodes, from + batch); };
   const auto begin_of = [&](const LO node) { return node < nodes ? begins(node) : total; };
   std::size_t most = 0;

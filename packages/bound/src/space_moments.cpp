@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "space_cells.hpp"
 
+#include "cell_kinds.hpp"
 #include "dense.hpp"
 #include "facet_polynomials.hpp"
 #include "space_contact.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <vector>
 
 namespace rpc::bound
@@ -188,39 +186,9 @@ FacetTables facet_tables(const int order)
 
 void find_kinds(SpaceInput &in, const Comm &comm)
 {
-  constexpr double equal =
-      1e-11; // of the body: what rounding may make of coordinates. Kinds steer the descent alone, not the bound
-  const auto x = to_host(in.coords);
-  const auto cells = to_host(in.cells);
-  const auto block = to_host(in.block);
-  double size = 0;
-  for (int d = 0; d < 3; ++d) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (std::size_t i = 0; i < x.extent(0); ++i) {
-      low = std::min(low, x(i, d));
-      high = std::max(high, x(i, d));
-    }
-    size = std::max(size, max_all(comm, high) - min_all(comm, low));
-  }
-  in.kind = DeviceView<int *>("rpc::bound::kind", in.num_cells());
-  const auto kind = Kokkos::create_mirror_view(in.kind);
-  std::map<std::array<long long, 10>, int> found;
-  std::vector<LO> examples;
-  for (LO c = 0; c < in.num_cells(); ++c) {
-    std::array<long long, 10> key{};
-    key[9] = block(c);
-    for (int v = 1; v < 4; ++v)
-      for (int d = 0; d < 3; ++d)
-        key[3 * (v - 1) + d] = std::llround((x(cells(c, v), d) - x(cells(c, 0), d)) / (equal * size));
-    const auto [at, is_new] = found.try_emplace(key, static_cast<int>(found.size()));
-    kind(c) = at->second;
-    if (is_new) examples.push_back(c);
-  }
-  Kokkos::deep_copy(in.kind, kind);
-  in.example = DeviceView<LO *>("rpc::bound::example", examples.size());
-  const auto example = Kokkos::create_mirror_view(in.example);
-  for (std::size_t k = 0; k < examples.size(); ++k) example(k) = examples[k];
-  Kokkos::deep_copy(in.example, example);
+  const Kinds kinds = kinds_of_cells(comm, in.coords, in.cells, in.block, 4);
+  in.kind = kinds.kind;
+  in.example = kinds.example;
 }
 
 double norm_of_lifted_loads(const SpaceInput &in, const Comm &comm, const LiftedLoads &lifted,

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "star_solves.hpp"
 
+#include "cell_kinds.hpp"
+
+#include <vector>
+
 namespace rpc::bound
 {
 namespace
@@ -142,23 +146,28 @@ struct StarModes {
   }
 };
 
-/// The energy of each star in its modes, and its Cholesky factor.
+/// The energy of each kind of stars in its modes, and its Cholesky factor: rows one after another.
 struct FactorStars {
   StarModes modes;
   CellForms forms;
+  DeviceView<LO *> example; // (kinds) node
   DeviceView<std::size_t *> first;
   DeviceView<double *> factor;
 
-  KOKKOS_FUNCTION void add_cell(const LO node, const int k, const int n, double *H) const
+  KOKKOS_FUNCTION void add_cell(const LO node, const int k, double *H) const
   {
     const CellInput &in = modes.in;
     const int spokes = in.facets.num_spokes(node), per_facet = 2 * (in.reference.degree + 1), both = modes.of_each();
     const int spoke[2] = {k, (k + 1) % spokes};
     const LO c = in.facets.star_cell(in.facets.first(node) + k);
-    const int corner = in.facets.star_corner(in.facets.first(node) + k), sides = in.reference.sides;
+    const int corner = in.facets.star_corner(in.facets.first(node) + k), sides = in.reference.sides, kind = in.kind(c);
     const int ordinal[2] = {corner, (corner + sides - 1) % sides};
-    double M[2][6][StarModes::most];
-    for (int s = 0; s < 2; ++s) modes.of_spoke(node, spoke[s], M[s]);
+    double M[2][6][StarModes::most]; // outward
+    for (int s = 0; s < 2; ++s) {
+      modes.of_spoke(node, spoke[s], M[s]);
+      for (int p = 0; p < per_facet; ++p)
+        for (int b = 0; b < both; ++b) M[s][p][b] *= side_factor(in.facets.sign(c, ordinal[s]), p / 2);
+    }
     for (int s = 0; s < 2; ++s)
       for (int r = 0; r < 2; ++r)
         for (int b = 0; b < both; ++b) {
@@ -166,53 +175,77 @@ struct FactorStars {
           for (int p = 0; p < per_facet; ++p) {
             Am[p] = 0;
             for (int q = 0; q < per_facet; ++q)
-              Am[p] += forms.A(c, ordinal[s] * per_facet + p, ordinal[r] * per_facet + q) * M[r][q][b];
+              Am[p] += forms.second(kind, ordinal[s] * per_facet + p, ordinal[r] * per_facet + q) * M[r][q][b];
           }
           for (int a = 0; a < both; ++a) {
             const int row = modes.place(spoke[s], a), column = modes.place(spoke[r], b);
             if (row < column) continue; // the factor is made of the lower part
             double sum = 0;
             for (int p = 0; p < per_facet; ++p) sum += M[s][p][a] * Am[p];
-            H[row * n + column] += sum;
+            H[row_of_triangle(row) + column] += sum;
           }
         }
   }
 
-  KOKKOS_FUNCTION void operator()(const LO node) const
+  KOKKOS_FUNCTION void operator()(const LO kind) const
   {
+    const LO node = example(kind);
     const int n = modes.size(node);
     if (n == 0) return;
-    double *const H = factor.data() + first(node);
-    for (int i = 0; i < n * n; ++i) H[i] = 0;
-    for (int k = 0; k < modes.in.facets.num_cells(node); ++k) add_cell(node, k, n, H);
-    for (int j = 0; j < n; ++j) {
-      const double own = H[j * n + j];
-      for (int k = 0; k < j; ++k)
-        for (int i = j; i < n; ++i) H[i * n + j] -= H[i * n + k] * H[j * n + k];
-      if (!(H[j * n + j] > 1e-12 * own)) { // a mode that is not there
-        for (int i = j; i < n; ++i) H[i * n + j] = 0;
-        H[j * n + j] = math::infinity<double>;
-        continue;
+    double *const H = factor.data() + first(kind);
+    for (std::size_t i = 0; i < row_of_triangle(n); ++i) H[i] = 0;
+    for (int k = 0; k < modes.in.facets.num_cells(node); ++k) add_cell(node, k, H);
+    double *own = H;
+    for (int i = 0; i < n; own += ++i) {
+      const double before = own[i];
+      const double *other = H;
+      for (int j = 0; j <= i; other += ++j) {
+        double sum = own[j];
+        for (int k = 0; k < j; ++k) sum -= own[k] * other[k];
+        if (j < i)
+          own[j] = other[j] > 0 ? sum / other[j] : 0;
+        else
+          own[i] = sum > 1e-12 * before ? math::sqrt(sum) : 0; // 0: a mode that is not there
       }
-      const double pivot = math::sqrt(H[j * n + j]);
-      for (int i = j; i < n; ++i) H[i * n + j] /= pivot;
     }
   }
 };
 
-/// Where the factor of each star begins. @return how many entries they have in all
-std::size_t place_factors(const StarModes &modes, const DeviceView<std::size_t *> &first)
+/// Kinds of stars: cells of the same kinds in the same places.
+Kinds star_kinds(const StarModes &modes)
 {
-  std::size_t total = 0;
-  Kokkos::parallel_scan(
-      "rpc::bound::sizes_of_stars", device_range(static_cast<LO>(first.extent(0)) - 1),
-      KOKKOS_LAMBDA(const LO node, std::size_t &before, const bool last) {
-        if (last) first(node) = before;
-        const std::size_t n = modes.size(node);
-        before += n * n;
-      },
-      total);
-  return total;
+  const CellInput &in = modes.in;
+  const LO nodes = static_cast<LO>(in.facets.num_spokes.extent(0));
+  Kinds kinds = all_different(nodes);
+  if (all_differ(in)) return kinds;
+  DeviceView<signed char *> free("rpc::bound::free", in.facets.size());
+  Kokkos::parallel_for(
+      "rpc::bound::free_components", device_range(in.facets.size()),
+      KOKKOS_LAMBDA(const LO f) { free(f) = static_cast<signed char>(modes.free_components(f)); });
+  Kokkos::fence();
+  const auto on_host = to_host(free), toward = to_host(in.facets.toward);
+  const auto first = to_host(in.facets.first);
+  const auto cells = to_host(in.facets.star_cell), spokes = to_host(in.facets.spoke);
+  const auto corner = to_host(in.facets.star_corner), count = to_host(in.facets.num_spokes), of_cell = to_host(in.kind);
+  const auto ends = to_host(in.facets.node);
+  const auto kind = Kokkos::create_mirror_view(kinds.kind);
+  Found<int> found;
+  std::vector<int> key;
+  for (LO node = 0; node < nodes; ++node) {
+    key.clear();
+    const std::size_t begin = first(node);
+    const int n = static_cast<int>(first(node + 1) - begin);
+    for (int k = 0; k < count(node); ++k) {
+      const LO f = spokes(begin + node + k);
+      key.push_back(k < n ? of_cell(cells(begin + k)) : -1);
+      const int at = k < n ? corner(begin + k) : 0;
+      key.push_back(((at * 4 + on_host(f) + 1) * 2 + (ends(f, 0) == node)) * 2 + (toward(begin + node + k) > 0));
+    }
+    kind(node) = found(key, node);
+  }
+  Kokkos::deep_copy(kinds.kind, kind);
+  kinds.example = device_values(found.example, "rpc::bound::example");
+  return kinds;
 }
 
 } // namespace
@@ -221,14 +254,26 @@ StarSolves::StarSolves(const CellInput &in, const BoundaryTractions &boundary, c
                        const FacetExchange &exchange)
     : in_(in), boundary_(boundary), exchange_(exchange)
 {
-  const LO nodes = static_cast<LO>(in.facets.num_spokes.extent(0));
-  first_ = DeviceView<std::size_t *>("rpc::bound::first", nodes + 1);
   const StarModes modes{in, boundary};
-  const std::size_t total = place_factors(modes, first_);
+  const Kinds kinds = star_kinds(modes);
+  kind_ = kinds.kind;
+  const LO count = static_cast<LO>(kinds.example.extent(0));
+  first_ = DeviceView<std::size_t *>("rpc::bound::first", count);
+  const auto first = first_;
+  const auto example = kinds.example;
+  std::size_t total = 0;
+  Kokkos::parallel_scan(
+      "rpc::bound::sizes_of_stars", device_range(count),
+      KOKKOS_LAMBDA(const LO kind, std::size_t &before, const bool last) {
+        if (last) first(kind) = before;
+        before += row_of_triangle(modes.size(example(kind)));
+      },
+      total);
   factor_ = DeviceView<double *>(Kokkos::view_alloc("rpc::bound::factor", Kokkos::WithoutInitializing), total);
-  answer_ = DeviceView<double *>("rpc::bound::answer", modes.num_common() * static_cast<std::size_t>(nodes) +
+  answer_ = DeviceView<double *>("rpc::bound::answer", modes.num_common() * static_cast<std::size_t>(kind_.extent(0)) +
                                                            modes.own() * in.facets.spoke.extent(0));
-  Kokkos::parallel_for("rpc::bound::factor_stars", device_range(nodes), FactorStars{modes, forms, first_, factor_});
+  Kokkos::parallel_for("rpc::bound::factor_stars", device_range(count),
+                       FactorStars{modes, forms, example, first_, factor_});
   Kokkos::fence();
 }
 
@@ -236,6 +281,7 @@ void StarSolves::apply(const Tractions &g, const Tractions &z) const
 {
   const StarModes modes{in_, boundary_};
   const auto first = first_;
+  const auto kind = kind_;
   const auto factor = factor_, answer = answer_;
   const int per_facet = 2 * (in_.reference.degree + 1), both = modes.of_each();
   Kokkos::parallel_for(
@@ -252,14 +298,15 @@ void StarSolves::apply(const Tractions &g, const Tractions &z) const
           for (int b = 0; b < both; ++b)
             for (int p = 0; p < per_facet; ++p) y[modes.place(k, b)] += M[p][b] * g(f * per_facet + p);
         }
-        const double *const L = factor.data() + first(node);
-        for (int i = 0; i < n; ++i) {
-          for (int k = 0; k < i; ++k) y[i] -= L[i * n + k] * y[k];
-          y[i] /= L[i * n + i];
+        const double *const L = factor.data() + first(kind(node)), *row = L;
+        for (int i = 0; i < n; row += ++i) {
+          for (int k = 0; k < i; ++k) y[i] -= row[k] * y[k];
+          y[i] = row[i] > 0 ? y[i] / row[i] : 0;
         }
         for (int i = n - 1; i >= 0; --i) {
-          for (int k = i + 1; k < n; ++k) y[i] -= L[k * n + i] * y[k];
-          y[i] /= L[i * n + i];
+          row -= i + 1;
+          y[i] = row[i] > 0 ? y[i] / row[i] : 0;
+          for (int k = 0; k < i; ++k) y[k] -= row[k] * y[i];
         }
       });
   Kokkos::fence();

@@ -12,7 +12,7 @@ namespace rpc::bound
 class StarSolves
 {
 public:
-  /// Factors the energies of all stars.
+  /// Factors the energy of each kind of stars: cells of the same kinds in the same places.
   StarSolves(const CellInput &in, const BoundaryTractions &boundary, const CellForms &forms,
              const FacetExchange &exchange);
   /// z <- sum over the stars of the minimizers of their energy for the derivative g.
@@ -23,8 +23,9 @@ private:
   CellInput in_;
   BoundaryTractions boundary_;
   const FacetExchange &exchange_;
-  DeviceView<std::size_t *> first_; // (nodes + 1) where the factor of a star begins
-  DeviceView<double *> factor_;     // row by row
+  DeviceView<int *> kind_;          // (nodes)
+  DeviceView<std::size_t *> first_; // (kinds) where its factor begins
+  DeviceView<double *> factor_;     // rows of lower triangles
   DeviceView<double *> answer_;     // (3 nodes + modes of spokes)
 };
 

@@ -118,11 +118,12 @@ TEST(Hexahedra, HaveTheTrilinearDisplacementOnTheirTetrahedra)
   field.flattened = false;
   const double lambda[4] = {0.1, 0.2, 0.3, 0.4};
   for (LO c = 0; c < b.in.num_cells(); ++c) {
-    double place[3] = {}, value[3], H[3][3], D[3][3];
+    double place[3] = {}, value[3], D[3][3];
     for (int v = 0; v < 4; ++v)
       for (int i = 0; i < 3; ++i) place[i] += lambda[v] * x(b.in.cells(c, v), i);
-    field.at(c, lambda, value, H);
-    field.gradient_there(AffineTetrahedron(b.in, c), c, lambda, D);
+    const FieldOfHexahedra::Here here(field, AffineTetrahedron(b.in, c), c);
+    here.value(lambda, value);
+    here.gradient(lambda, D);
     EXPECT_NEAR(value[0], place[0] * place[1] * place[2], 1e-13);
     EXPECT_NEAR(value[1], place[0] * place[1], 1e-13);
     EXPECT_NEAR(value[2], place[2], 1e-13);
@@ -141,13 +142,13 @@ TEST(Hexahedra, HaveOneDisplacementOnBothSidesOfAFacetAndAFlatOneOnContactSides)
   const double lambda[3] = {0.2, 0.5, 0.3};
   int flat = 0;
   for (LO f = 0; f < b.in.facets.size(); ++f) {
-    double value[2][3], H[3][3];
+    double value[2][3];
     for (int side = 0; side < (b.in.facets.on_boundary(f) ? 1 : 2); ++side) {
       const LO c = b.in.facets.cell(f, side);
       double at[4] = {};
       for (int v = 0, k = 0; v < 4; ++v)
         if (v != b.in.facets.ordinal(f, side)) at[v] = lambda[k++];
-      field.at(c, at, value[side], H);
+      FieldOfHexahedra::Here(field, AffineTetrahedron(b.in, c), c).value(at, value[side]);
     }
     bool on_flat = b.in.facets.on_boundary(f);
     for (int v = 0; v < 3; ++v) on_flat = on_flat && b.in.coords(b.in.facets.node(f, v), 0) == 0;
@@ -174,16 +175,21 @@ TEST(Hexahedra, HaveDerivativesThatAreThoseOfTheirDisplacement)
   int flat = 0;
   for (LO c = 0; c < b.in.num_cells(); ++c) {
     for (int e = 0; e < 6; ++e) flat += b.in.flat(c, e, 0) >= 0;
-    double value[3], H[3][3], unused[3][3];
-    field.at(c, {0.1, 0.2, 0.3, 0.4}, value, H);
+    const AffineTetrahedron cell(b.in, c);
+    const FieldOfHexahedra::Here here(field, cell, c);
+    double D[3][3];
+    here.gradient({0.1, 0.2, 0.3, 0.4}, D);
     for (int l = 0; l < 3; ++l) {
       double at[2][4] = {{0.1, 0.2, 0.3, 0.4}, {0.1, 0.2, 0.3, 0.4}}, moved[2][3];
       for (int k = 0; k < 2; ++k) {
         at[k][l + 1] += k == 0 ? step : -step;
         at[k][0] -= k == 0 ? step : -step;
-        field.at(c, at[k], moved[k], unused);
+        here.value(at[k], moved[k]);
       }
-      for (int i = 0; i < 3; ++i) EXPECT_NEAR(H[i][l], (moved[0][i] - moved[1][i]) / (2 * step), 1e-4) << "cell " << c;
+      for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(D[i][0] * cell.F[0][l] + D[i][1] * cell.F[1][l] + D[i][2] * cell.F[2][l],
+                    (moved[0][i] - moved[1][i]) / (2 * step), 1e-4)
+            << "cell " << c;
     }
   }
   EXPECT_GT(flat, 0);
@@ -212,10 +218,11 @@ TEST(Hexahedra, CountTheWorkOfLoadsWithTheDisplacementOnFaces)
     if (!b.in.facets.on_boundary(f)) continue;
     double moment[10][3] = {};
     for (int q = 0; q < rule.size(); ++q) {
-      double at[4] = {}, value[3], H[3][3];
+      double at[4] = {}, value[3];
       for (int v = 0, k = 0; v < 4; ++v)
         if (v != b.in.facets.ordinal(f, 0)) at[v] = rule.point[q][k++];
-      field.at(b.in.facets.cell(f, 0), at, value, H);
+      const LO c = b.in.facets.cell(f, 0);
+      FieldOfHexahedra::Here(field, AffineTetrahedron(b.in, c), c).value(at, value);
       for (int j = 0; j < count; ++j)
         for (int i = 0; i < 3; ++i) moment[j][i] += rule.weight[q] * polynomials(j, rule.point[q]) * value[i];
     }
@@ -333,11 +340,12 @@ TEST(Hexahedra, HaveMeanMomentsOfBothSidesAlongTheNormalOfTheFirst)
       const LO c = b.in.facets.cell(f, side);
       const int s = b.in.facets.ordinal(f, side);
       const AffineTetrahedron cell(b.in, c);
+      const FieldOfHexahedra::Here here(field, cell, c);
       for (int q = 0; q < rule.size(); ++q) {
         double at[4] = {}, D[3][3], sigma[3][3];
         for (int v = 0, k = 0; v < 4; ++v)
           if (v != s) at[v] = rule.point[q][k++];
-        field.gradient_there(cell, c, at, D);
+        here.gradient(at, D);
         stress_of_gradient(3, 2, D, sigma);
         for (int a = 0; a < 3; ++a)
           for (int i = 0; i < 3; ++i)
