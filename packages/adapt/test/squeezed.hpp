@@ -11,9 +11,9 @@ namespace rpc::test
 
 inline constexpr fem::Material steel{2000, 0.3};
 
-/// (0, 2) x (0, 1) in 4 x 2 cells over a foundation, squeezed by a strain; all contact nodes at one pressure.
+/// (0, 2) x (0, 1) in 4 x 2 cells, in space times (0, 1.5) in 2, over a foundation, squeezed by a strain; all contact nodes at one pressure.
 struct Squeezed {
-  static constexpr double strain = -0.01, length = 2, h = 0.5;
+  static constexpr double strain = -0.01, length = 2, h = 0.5, depth = 1.5, h_z = 0.75;
   fem::Discretization d;
   contact::ContactNodes nodes;
   contact::ContactResult result;
@@ -21,7 +21,8 @@ struct Squeezed {
 
   Squeezed(const mesh::Element &element, const double yield, const double gap, const double pressure,
            const contact::Obstacle &obstacle = {})
-      : d(body({{0, 0}, {length, 1}, {4, 2}, element}, world()))
+      : d(element.dim == 2 ? body({{0, 0}, {length, 1}, {4, 2}, element}, world())
+                           : body({{0, 0, 0}, {length, 1, depth}, {4, 2, 2}, element}, world()))
   {
     contact::ContactOptions options;
     options.side = "bottom";
@@ -36,7 +37,7 @@ struct Squeezed {
     Kokkos::deep_copy(result.pressure, pressure);
     Kokkos::deep_copy(result.penetration, -gap); // nothing moves at the bottom
     result.total.max_pressure = pressure;
-    result.total.contact_length = length;
+    result.total.contact_length = element.dim == 2 ? length : length * depth;
     result.sides = {result.total};
   }
   adapt::ErrorEstimate estimate(const std::vector<fem::TractionLoad> &loads = {}) const
