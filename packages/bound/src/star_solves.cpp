@@ -248,6 +248,21 @@ Kinds star_kinds(const StarModes &modes)
   return kinds;
 }
 
+/// Where the factor of each kind begins. @return how many entries they have in all
+std::size_t place_factors(const StarModes &modes, const DeviceView<LO *> &example,
+                          const DeviceView<std::size_t *> &first)
+{
+  std::size_t total = 0;
+  Kokkos::parallel_scan(
+      "rpc::bound::sizes_of_stars", device_range(static_cast<LO>(first.extent(0))),
+      KOKKOS_LAMBDA(const LO kind, std::size_t &before, const bool last) {
+        if (last) first(kind) = before;
+        before += row_of_triangle(modes.size(example(kind)));
+      },
+      total);
+  return total;
+}
+
 } // namespace
 
 StarSolves::StarSolves(const CellInput &in, const BoundaryTractions &boundary, const CellForms &forms,
@@ -259,21 +274,12 @@ StarSolves::StarSolves(const CellInput &in, const BoundaryTractions &boundary, c
   kind_ = kinds.kind;
   const LO count = static_cast<LO>(kinds.example.extent(0));
   first_ = DeviceView<std::size_t *>("rpc::bound::first", count);
-  const auto first = first_;
-  const auto example = kinds.example;
-  std::size_t total = 0;
-  Kokkos::parallel_scan(
-      "rpc::bound::sizes_of_stars", device_range(count),
-      KOKKOS_LAMBDA(const LO kind, std::size_t &before, const bool last) {
-        if (last) first(kind) = before;
-        before += row_of_triangle(modes.size(example(kind)));
-      },
-      total);
+  const std::size_t total = place_factors(modes, kinds.example, first_);
   factor_ = DeviceView<double *>(Kokkos::view_alloc("rpc::bound::factor", Kokkos::WithoutInitializing), total);
   answer_ = DeviceView<double *>("rpc::bound::answer", modes.num_common() * static_cast<std::size_t>(kind_.extent(0)) +
                                                            modes.own() * in.facets.spoke.extent(0));
   Kokkos::parallel_for("rpc::bound::factor_stars", device_range(count),
-                       FactorStars{modes, forms, example, first_, factor_});
+                       FactorStars{modes, forms, kinds.example, first_, factor_});
   Kokkos::fence();
 }
 
