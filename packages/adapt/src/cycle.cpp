@@ -142,8 +142,9 @@ void add_what_a_mesh_leaves(const Cycle &last, const std::vector<double> &eta, O
   // The largest penetration may be that of a corner; what remains of it where the body has drawn back is as uncertain as the dents.
   const double deepest = std::max(last.contact.max_penetration, last.contact.max_dent);
   errors.max_penetration = std::max({errors.max_penetration, last.estimate * deepest, last.peak.rounded_depth});
-  if (last.contact.max_penetration > 0) // else nothing gives way
-    errors.max_penetration = std::max(errors.max_penetration, last.misread_penetration - last.contact.max_penetration);
+  const double penetration = last.contact.max_penetration;
+  errors.max_penetration =
+      std::max(errors.max_penetration, last.contact.gives_way() ? last.misread_penetration - penetration : penetration);
   if (hardly_finer(eta)) errors.max_pressure = std::max(errors.max_pressure, last.estimate * last.contact.max_pressure);
   errors.max_pressure =
       last.peak.at_bound ? 0 : std::max({errors.max_pressure, last.recovered_max_pressure, last.peak.rounded});
@@ -191,7 +192,7 @@ void judge_rigid_foundation(const Cycle &last, ObservedErrors &errors)
 {
   const contact::ContactSums &all = last.contact;
   const double gives_way_from = last.peak.lowest_bound;
-  if (all.max_dent > 0 || all.foundation_energy > 0 || !std::isfinite(gives_way_from)) return;
+  if (all.gives_way() || !std::isfinite(gives_way_from)) return;
   const double most = all.max_pressure + errors.max_pressure;
   if (most == 0 || most < gives_way_from) return; // NaN is not
   errors.max_penetration = std::numeric_limits<double>::quiet_NaN();

@@ -51,7 +51,7 @@ TEST(ErrorBars, AreNoLessThanWhatTheLastMeshLeavesOpen)
 TEST(ErrorBars, CountWhatReadingTheGapAtNodesLeavesOpen)
 {
   std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10, 30)};
-  cycles.back().contact.max_penetration = cycles.front().contact.max_penetration = 0.1;
+  for (Cycle &cycle : cycles) cycle.contact.max_penetration = cycle.contact.max_dent = 0.1;
   const auto before = observed_errors(cycles);
   cycles.back().misread_force = 0.03;
   cycles.back().misread_energy = 0.01; // of which the load, moved by 2 J / 10 N, makes 0.1 N
@@ -64,6 +64,14 @@ TEST(ErrorBars, CountWhatReadingTheGapAtNodesLeavesOpen)
   EXPECT_NEAR(errors.energy, before.energy + 0.01, 1e-15);
   EXPECT_NEAR(before.max_penetration, 0.02 * 0.1, 1e-15);
   EXPECT_NEAR(errors.max_penetration, 0.05, 1e-15); // samples between the nodes lie so much deeper
+}
+
+TEST(ErrorBars, OfThePenetrationOfAFoundationThatDoesNotGiveWayAreRounding)
+{
+  std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10, 30)};
+  cycles.back().contact.max_penetration = 1e-17;
+  cycles.back().misread_penetration = 0.15; // the side lies there between the nodes
+  EXPECT_EQ(observed_errors(cycles).max_penetration, 1e-17);
 }
 
 TEST(ErrorBars, CountTheInterpolantOfASmoothGap)

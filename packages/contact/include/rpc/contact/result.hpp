@@ -34,9 +34,11 @@ struct ContactSums {
   double friction_work = 0;     ///< sum of w s |e| of this step
   // Between the contact points, see look_between_nodes():
   double max_penetration_between_nodes = 0; ///< largest e                                                        (3.15)
-  double unseen_penetration = 0;            ///< the same on facets of which no contact point bears a pressure
+  double unseen_penetration = 0;            ///< the same on facets where contact is unseen
   double unseen_energy = 0;                 ///< what it would take to push these out of the foundation           (3.16)
 
+  /// Whether the foundation gives way; where it does not, penetrations are 0 but for rounding.
+  bool gives_way() const { return max_dent > 0 || foundation_energy > 0; }
   ContactSums &operator+=(const ContactSums &other);
 };
 
