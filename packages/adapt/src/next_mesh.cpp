@@ -55,7 +55,7 @@ MeshPlanner::Goal MeshPlanner::goal(const double eta, const double target, const
 {
   const bool nested = nests(task_.mesh, task_.adapt);
   const double far = (dim == 2 ? plan_rules.aim : plan_rules.aim_in_space) * target;
-  const bool is_near = eta < plan_rules.near * far;
+  const bool is_near = eta < (dim == 2 || nested ? plan_rules.near : plan_rules.near_in_space) * far;
   const double wanted = is_near && nested ? plan_rules.aim_near_nested * target : far;
   const double meshes =
       std::ceil(std::log(eta / wanted) / std::log(double(plan_rules.greatest_reduction))); // in equal steps
@@ -139,8 +139,9 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
   }
   const double most = static_cast<double>(task_.adapt.max_dofs);
   const double allowed = plan_rules.share_of_max_dofs * most * cells / dofs / ratio;
+  const double sensible = plan_rules.greatest_excess * cells * growth_for(eta / goal_.bound, mesh.element);
   const double squared_error = goal_.bound * goal_.bound;
-  Sizes sizes = new_sizes(d, estimate, {squared_error, std::numeric_limits<double>::infinity(), goal_.growth});
+  Sizes sizes = new_sizes(d, estimate, {squared_error, sensible, goal_.growth});
   const bool at_limit = sizes.predicted_cells > allowed;
   if (at_limit && nothing_gained(eta, target, dofs, mesh.element)) {
     reason = "the target is not reached within \"Adapt->Max Dofs\" = " + std::to_string(task_.adapt.max_dofs) + ": " +

@@ -344,7 +344,7 @@ std::vector<char> singular_vertices(const EstimatedMesh &mesh, const Geometry &g
       for (int a = 0; a < mesh.vertices && singular[n]; ++a) {
         const int m = mesh.vertices_of(cell)[a];
         const bool stronger = mesh.dim == 2 ? exponent[m] < exponent[n] || (exponent[m] == exponent[n] && m < n)
-                                            : exponent[m] < exponent[n] - size_rules.margin;
+                                            : exponent[m] < exponent[n] - size_rules.same_in_space;
         if (stronger) singular[n] = 0;
       }
   }

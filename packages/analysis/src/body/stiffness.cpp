@@ -24,7 +24,8 @@ struct Split {
 Split split_of(const mesh::Element &element, const double nu)
 {
   if (element.dim == 2 || element.shape != mesh::Shape::simplex) return {linear_rules.soft, element.order == 1};
-  return {linear_rules.soft_tetrahedra, nu > linear_rules.pays_above};
+  return nu > linear_rules.pays_above ? Split{linear_rules.softer_tetrahedra, true}
+                                      : Split{linear_rules.soft_tetrahedra, false};
 }
 
 } // namespace

@@ -260,7 +260,7 @@ bool ActiveSetLoop::may_settle()
   const bool contracts = left_ <= choice_rules.most_left;
   fewest_changes_ = fewest_changes_ > 0 ? std::min(fewest_changes_, changes) : changes;
   const bool tells = predicted_ || before > 1;
-  if (tells && overshoot > most_overshoot_) return false;
+  if (tells && changes > choice_rules.few_changes && overshoot > most_overshoot_) return false;
   if (creeps && !is_near && !contracts && before >= choice_rules.fewest_to_tell) return false;
   return headway_.take(contracts || is_near, overshoot > choice_rules.much ? 2 : 1) != Headway::Answer::stuck;
 }

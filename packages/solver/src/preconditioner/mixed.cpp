@@ -84,7 +84,7 @@ LinearSolverOptions for_saddle()
 {
   LinearSolverOptions options;
   options.method = "BiCGStab";
-  options.max_iterations = linear_rules.gmres_vectors;
+  options.max_iterations = linear_rules.iterations_of_pass;
   return options;
 }
 

@@ -26,6 +26,7 @@ struct ChoiceRules {
                     "theory.md (5.8a): bodies of equal sides stay below"};
   Rule<double> far_too_much{1, "choice.far_too_much", "overshoot that ends choices [-]", "measurements.md: Limits on active-set updates"};
   Rule<double> far_too_much_of_rubber{10, "choice.far_too_much_of_rubber", "the same of nearly incompressible bodies [-]", "not measured"};
+  Rule<GO> few_changes{5, "choice.few_changes", "changed points up to which overshoot ends nothing [-]", "measurements.md: Limits on active-set updates"};
   // Where an active set is confirmed
   Rule<int> most_updates{2, "choice.most_updates", "multiplier updates at the end, even if pressures miss their tolerance then [-]", "not measured"};
   Rule<int> most_idle_turns{4, "choice.most_idle_turns", "idle steps in a row, friction in space [-]", "not measured"};
@@ -91,9 +92,10 @@ struct LinearRules {
   // Nearly incompressible bodies
   Rule<double> mixed_above{0.48, "body.mixed_above", "Poisson's ratio above which the mixed form is taken [-]", "theory.md (4.13)"};
   Rule<double> soft{0.4, "body.soft", "Poisson's ratio of the soft part of K [-]", "theory.md (4.13)"};
-  Rule<double> soft_tetrahedra{0.45, "body.soft_tetrahedra", "the same in tetrahedra [-]", "theory.md (4.13)"};
+  Rule<double> soft_tetrahedra{0.47, "body.soft_tetrahedra", "the same in tetrahedra [-]", "theory.md (4.13)"};
   Rule<double> pays_above{0.495, "body.pays_above", "Poisson's ratio above which tetrahedra have equations for alternating pressures [-]",
                           "theory.md (4.15a)"};
+  Rule<double> softer_tetrahedra{0.45, "body.softer_tetrahedra", "the soft part's where they have [-]", "theory.md (4.15a)"};
   // Iterations to expect, to 1e-8
   Rule<double> cost_of_step{0.035, "body.cost_of_step", "step of the polynomial for pressures [CG iterations]", "theory.md (4.10d)"};
   Rule<double> expected{4, "body.expected", "of other bodies, times (1 - 2 nu)^(-1/2) [CG iterations]", "theory.md (4.10b)"};

@@ -36,11 +36,12 @@ struct LinearRules {
       1e-2, "linear.large_error",
       "error for one application of an exact factor, and at which a breakdown is that of rounding [-]",
       "with less a thin strip takes 16 Newton steps instead of 6"};
-  Rule<int> gmres_vectors{50, "linear.gmres_vectors",
-                          "iterations of GMRES, and of BiCGStab in a pass of the mixed form, before a restart [-]",
+  Rule<int> gmres_vectors{50, "linear.gmres_vectors", "GMRES iterations before a restart [-]",
                           "with multigrid it takes fewer"};
 
   // The mixed form, (4.14), (4.15).
+  Rule<int> iterations_of_pass{80, "linear.iterations_of_pass", "BiCGStab iterations before a restart [-]",
+                               "its own residuals are no longer those of x by then"};
   Rule<double> degree_of_root{0.7, "linear.degree_of_root", "degree over the root of the condition number [-]",
                               "least time"};
   Rule<int> least_degree{4, "linear.least_degree", "degree for pressures at least [-]", "least time"};
