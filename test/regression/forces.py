@@ -42,6 +42,16 @@ SOFT = """tool:
     Obstacle: {Type: sphere, Radius: 1.0, Centre: [0.0, -1.0], TOP}
   Output: {Exodus: false}
 """
+EDGE = """edge:
+  Mesh: {Lower: [0.0, 0.0, 0.0], Upper: [2.84597, 1.0, 0.995], Cells: [23, 8, 8], Element: P1}
+  Material: {Young's Modulus: 2400.0, Poisson's Ratio: 0.2}
+  Dirichlet: {top: {X: 0.0, Y: 0.0, Z: 0.0}}
+  Contact:
+    Side: bottom
+    Obstacle: {Type: wedge, Normal: [0.0, 1.0, 0.0], Axis: [0.0, 0.0, 1.0], Slope: 0.068, Edge Radius: 2.9, Point: [1.9157, PLACE, 0.5], FORCE}
+  Uzawa: {Tolerance: 1.0e-11}
+  Output: {Exodus: false}
+"""
 YIELDS, SPRINGS, RUBS = "Yield Stress: 40.0", "Stiffness: 3000.0\n    Yield Stress: 60.0", "Friction Coefficient: 0.3"
 TWO_MOTIONS = """tool:
   Mesh: {Lower: [-1.0, 0.0], Upper: [1.0, 1.0], Cells: [32, 16], Element: Q2}
@@ -80,6 +90,12 @@ class Forces(WrittenDeckTestCase):
                 given = self.solve("moved", SOFT.replace("[0.0, -1.0], TOP", f'[0.0, "-1.0 + {moved!r}*t"]'))
                 self.assertAlmostEqual(given["contact_force"][1], force, delta=1e-7 * force)
                 self.assertLessEqual(sum(found["newton_iterations"]), sum(given["newton_iterations"]) + 2)
+
+    def test_searches_for_a_curved_tool_take_no_more_steps_than_its_path(self):
+        given = self.solve("moved", EDGE.replace("PLACE", '"0.0065*t"').replace(", FORCE", ""))
+        found = self.solve("pressed", EDGE.replace("PLACE", "0.0").replace("FORCE", f"Force Y: {given['contact_force'][1]!r}"))
+        self.assertAlmostEqual(found["obstacle_displacement"][1], 0.0065, delta=SAME * 0.0065)
+        self.assertLessEqual(sum(found["newton_iterations"]), sum(given["newton_iterations"]))
 
     def test_a_tool_moves_along_one_direction_and_its_body_along_another_that_contact_alone_holds(self):
         found = self.solve("pressed", TWO_MOTIONS)  # predicted with one point closed, which holds one of the two

@@ -164,7 +164,8 @@ ActiveSetTolerances active_set_tolerances(const StepOptions &options)
   const double given = options.newton.residual_tolerance;
   tolerances.residual =
       given < solver::NewtonOptions().residual_tolerance ? given : std::max(given, tolerances.residual);
-  tolerances.pressure = std::min(tolerances.pressure, 10 * options.uzawa.tolerance); // (5.10)
+  tolerances.pressure =
+      std::max(std::min(tolerances.pressure, 10 * options.uzawa.tolerance), options.on_the_way); // (5.10)
   return tolerances;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "body/obstacle_force.hpp"
 
+#include "rpc/analysis/rules.hpp"
 #include "rpc/contact/support.hpp"
 #include "rpc/core/dofs.hpp"
 #include "rpc/core/error.hpp"
@@ -40,6 +41,17 @@ double way_to_springs(const contact::Obstacle &obstacle, const Point &force)
   for (int c = 0; c < 3; ++c)
     if (force[c] != 0 && obstacle.stiffness[c] > 0) way = std::min(way, length(force) / obstacle.stiffness[c]);
   return way;
+}
+
+/// Whether searches from where a solution leads its obstacle are not expected to lead it further than a tolerance. Collective.  (3.17d)
+/// @param before  see Starts::led_before
+bool rests_where_led(const Problem &problem, const Point &before, const double tolerance, const StepSolution &s)
+{
+  if (pressed_by_force(problem.model())->obstacle.surface->is_flat) return true;
+  const Point way = left_to_go(problem, s);
+  Point expected{}; // each component falls on as it has fallen
+  for (int c = 0; c < 3; ++c) expected[c] = before[c] != 0 ? way[c] * way[c] / before[c] : way[c];
+  return length(expected) <= tolerance * s.u->normInf();
 }
 
 } // namespace
@@ -217,13 +229,18 @@ void settle_obstacle(const Problem &problem, const ConvexFunctional &functional,
   for (std::size_t k = 0; k < translations.size(); ++k) u.update(way[k], *translations[k], 1.);
 }
 
+bool leads_on(const Problem &problem, const StepSolution &s, const Starts &starts, const StepOptions &options)
+{
+  const double tolerance = options.uzawa.tolerance;
+  return options.on_the_way > 0 && s.uzawa.residuals.holds(options.on_the_way) &&
+         !obstacle_rests(problem, s, step_rules.of_rounding * tolerance) &&
+         !(starts.may_rest && rests_where_led(problem, starts.led_before, tolerance, s));
+}
+
 void rest_where_led(const Problem &problem, const Point &before, const double tolerance, StepSolution &s)
 {
+  if (!rests_where_led(problem, before, tolerance, s)) return;
   const Point way = left_to_go(problem, s);
-  Point expected{}; // each component falls on as it has fallen
-  for (int c = 0; c < 3; ++c) expected[c] = before[c] != 0 ? way[c] * way[c] / before[c] : way[c];
-  if (pressed_by_force(problem.model())->obstacle.surface->is_flat) expected = {};
-  if (!(length(expected) <= tolerance * s.u->normInf())) return;
   const int dim = problem.discretization().dim();
   s.state = shifted(std::move(s.state), way, dim);
   s.u = s.state.displacement;

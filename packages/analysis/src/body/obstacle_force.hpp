@@ -59,6 +59,9 @@ bool closes_under_force(const Problem &problem, const Step &step);
 /// Moves the obstacle that a force moves, seen as u is, to where the pressures that the functional has there bear the force. Collective.  (3.17f)
 void settle_obstacle(const Problem &problem, const ConvexFunctional &functional, Vector &u);
 
+/// Whether the obstacle is to be looked for elsewhere, whatever digits the solution lacks. Collective.                                (3.17c)
+bool leads_on(const Problem &problem, const StepSolution &s, const Starts &starts, const StepOptions &options);
+
 /// Sees a solution from where it leads its obstacle, if searches from there are not expected to lead it further than a tolerance. Collective. (3.17d)
 /// @param before  see Starts::led_before
 void rest_where_led(const Problem &problem, const Point &before, double tolerance, StepSolution &s);

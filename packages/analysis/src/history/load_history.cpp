@@ -323,7 +323,10 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
     const bool is_rough = !searched && bends(model);
     starts.may_rest = by_force && !is_rough && !on_foundation;
     starts.led_before = way_before;
-    s = solve_step(*problem_, step, *state_, is_rough ? to_look_further(options) : options, starts, reports);
+    StepOptions of_search = is_rough ? to_look_further(options) : options;
+    of_search.starts_near = searched.has_value();
+    if (bends(model) && !on_foundation) of_search.on_the_way = options.prediction.tolerance;
+    s = solve_step(*problem_, step, *state_, of_search, starts, reports);
     ++last_.solves;
     add_work(s, last_);
     s.prediction_seconds += std::exchange(prediction_seconds, 0);

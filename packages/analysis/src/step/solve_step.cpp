@@ -102,6 +102,9 @@ StepSolution solve_with(const Problem &problem, const Step &step, SolverState &s
       if (progress.uzawa) progress.uzawa(uzawa);
       const double previous = residual_before(worst, found.bounds_follow);
       worst.push_back(uzawa.residuals.worst());
+      s.u = s.state.displacement;
+      uzawa.converged = found.active_set_confirmed && leads_on(problem, s, starts, options); // (3.17c)
+      if (uzawa.converged) break;
       over = is_over(
           uzawa, found, previous, options.uzawa, problem.discretization().mesh->comm(),
           [&] { return iterate.raise_penalty(*u); }, // (5.12)
@@ -112,7 +115,6 @@ StepSolution solve_with(const Problem &problem, const Step &step, SolverState &s
           });
     }
     if (!uzawa.converged && step.support.by_coulomb_only) tell_want_of_friction(uzawa, problem, *s.state.displacement);
-    s.u = s.state.displacement;
     s.state.rest = Teuchos::null; // of the judgement alone
     if (uzawa.converged && starts.may_rest) rest_where_led(problem, starts.led_before, options.uzawa.tolerance, s);
     read_results(problem, options, state, s);
@@ -220,6 +222,7 @@ Minimization minimize_by_choices(const Problem &problem, Iterate &iterate, const
   tolerances.nearly_incompressible = is_nearly_incompressible(problem.discretization(), problem.model().materials);
   ActiveSetLoop loop(iterate, tolerances);
   if (predicted) loop.starts_predicted(predicted->found_by, predicted->coarse_choice);
+  if (options.starts_near) loop.starts_near();
   const auto result = run(std::ref(loop), options.newton.max_iterations);
   const bool bounds_follow = iterate.points().friction.anywhere && !loop.confirmed();
   return {result.converged,    result.steps,          result.reason, loop.confirmed(),
@@ -412,6 +415,18 @@ void read_results(const Problem &problem, const StepOptions &options, SolverStat
   s.reactions = reactions(problem, s);
 }
 
+/// What the linear solver has done since.
+solver::LinearSolverCounts counts_since(const solver::LinearSolverCounts &before, solver::LinearSolverCounts now)
+{
+  now.iterations.erase(now.iterations.begin(),
+                       now.iterations.begin() + static_cast<std::ptrdiff_t>(before.iterations.size()));
+  now.preconditioner_setups -= before.preconditioner_setups;
+  now.local_corrections -= before.local_corrections;
+  now.setup_seconds -= before.setup_seconds;
+  now.solve_seconds -= before.solve_seconds;
+  return now;
+}
+
 } // namespace
 
 void add_work(const StepSolution &other, StepSolution &s)
@@ -429,22 +444,5 @@ void add_work(const StepSolution &other, StepSolution &s)
   s.linear.setup_seconds += other.linear.setup_seconds;
   s.linear.solve_seconds += other.linear.solve_seconds;
 }
-
-namespace
-{
-
-/// What the linear solver has done since.
-solver::LinearSolverCounts counts_since(const solver::LinearSolverCounts &before, solver::LinearSolverCounts now)
-{
-  now.iterations.erase(now.iterations.begin(),
-                       now.iterations.begin() + static_cast<std::ptrdiff_t>(before.iterations.size()));
-  now.preconditioner_setups -= before.preconditioner_setups;
-  now.local_corrections -= before.local_corrections;
-  now.setup_seconds -= before.setup_seconds;
-  now.solve_seconds -= before.solve_seconds;
-  return now;
-}
-
-} // namespace
 
 } // namespace rpc::analysis

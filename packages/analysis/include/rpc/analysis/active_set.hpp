@@ -44,6 +44,8 @@ public:
   /// pressures were not enough; except with friction.
   /// @param coarse_choice  empty: there are no such choices
   void starts_predicted(FoundBy coarser, MakeCoarseChoice coarse_choice = {});
+  /// The start solves a problem near this one: solves are accurate at once, and rough only once states change.
+  void starts_near() { rough_ = false; }
   Status operator()(solver::MinimizationSteps &steps);
 
   FoundBy found_by() const;                     ///< what has been at work

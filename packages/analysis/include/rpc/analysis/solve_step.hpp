@@ -37,6 +37,9 @@ struct StepOptions {
       true; ///< where friction's states do not converge, the step is tried once more from the last of the given starts
   bool low_penalties =
       false; ///< where friction's states do not converge, the step is tried once more with low penalties (12.12a)
+  bool starts_near =
+      false;             ///< from the solution for another place of the obstacle: the first solve is accurate (3.17c)
+  double on_the_way = 0; ///< tolerance that is enough where the obstacle is led on to another place; 0: none is (3.17c)
   bool looks_between_nodes = true; ///< for contact that no node has (3.15): of users' meshes, not of those that predict
 };
 
