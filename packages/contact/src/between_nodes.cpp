@@ -227,10 +227,10 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     parts = std::max(parts, parts_for(*detail, facet, num_facets, max_all(mesh.comm(), longest)));
   }
   const auto fine = lattice_of(facet, parts), coarse = lattice_of(facet, Density::fewest_parts);
-  // The part in the foundation of a face in space that touches at one node may be narrow: these faces share as many samples as a side may have.
-  const auto at_edges = facet.dim == 2 && detail == nullptr
-                            ? lattice_of(facet, parts_of(facet, sum_all(mesh.comm(), partly_open)))
-                            : fine;
+  // Where a face in space touches on all of it, a few samples show how far the gap bends. What is unseen may be narrow, and so may be the part in the
+  // foundation of a face that touches at one node: these faces share as many samples as a side may have.
+  const bool shares = facet.dim == 2 && detail == nullptr;
+  const auto at_edges = shares ? lattice_of(facet, parts_of(facet, sum_all(mesh.comm(), partly_open))) : fine;
   const SideSamples samples{options, rows, fine, d.axisymmetric()}, few{options, rows, coarse, d.axisymmetric()},
       edges{options, rows, at_edges, d.axisymmetric()};
   const bool searches = facet.dim == 2 && !options.obstacle.exists() && options.gap.bounds;
@@ -243,24 +243,25 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     possible.push_back(samples.most_possible(f, shape, triangle));
     to_search += searches && possible.back() >= 0 && rows.bears_nothing(f) ? 1 : 0;
   }
-  const GapReading reading{options, rows, d.axisymmetric()};
+  const GapReading reading{options, rows, shares ? coarse : fine, coarse, d.axisymmetric()};
   const int most_searched =
       static_cast<int>(Density::searched / std::max(GO(1), sum_all(mesh.comm(), to_search))); // of each facet
   const auto block = to_host(mesh.block);
   const auto lame = to_host(fem::lame_table(d, materials));
   std::vector<double> squared(rows.num_facets(), 0.), width(rows.num_facets(), 0.);
-  SampledFacet sampled;
+  SampledFacet at_coarse, at_fine;
   double sum = 0;
   for (std::size_t n = 0; n < owned.size(); ++n) {
     const LO f = owned[n];
     const double lambda = lame(block(rows.cell(f)), 0), mu = lame(block(rows.cell(f)), 1), modulus = lambda + 2 * mu;
-    const bool touches = !rows.bears_nothing(f), partly = rows.is_partly_open(f);
-    const SideSamples &densely = partly ? edges : samples;
-    if (touches) reading.sample(f, densely.lattice, sampled);
+    const bool unseen = rows.bears_nothing(f), partly = rows.is_partly_open(f);
+    const bool all_touches = shares && !unseen && !partly;
+    if (!unseen) reading.sample(f, coarse, at_coarse);
     Found found;
     if (possible[n] >= 0) {
-      found = densely.look(f, modulus, least, touches ? &sampled : nullptr);
-      if (!touches && searches && !(found.deepest > 0))
+      found =
+          all_touches ? few.look(f, modulus, least, &at_coarse) : (unseen ? samples : edges).look(f, modulus, least);
+      if (unseen && searches && !(found.deepest > 0))
         if (const auto hidden = find_hidden_part(rows, f, shape, options, triangle, least, most_searched))
           found = found_in(*hidden, options, modulus);
     } else if (possible[n] > -open_by) {
@@ -269,17 +270,17 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     const PlaceBetweenNodes place{found.deepest, found.place, k, found.width, rows.size(f)};
     if (place.depth > mine.deepest.depth) mine.deepest = place;
     mine.smallest_gap = std::min(mine.smallest_gap, -found.largest_excess);
-    const bool looks = touches && (found.deepest > 0 || partly), off = looks && reading.is_off(f, sampled);
-    if (off || (looks && reading.has_deep_node(f, modulus))) {
-      const Misread misread = reading.read(f, modulus, 4 * mu * (lambda + mu) / modulus, sampled);
+    if (!unseen && (found.deepest > 0 || partly) && reading.is_off(f, modulus, at_coarse)) {
+      const Misread misread = reading.read(f, modulus, 4 * mu * (lambda + mu) / modulus);
       mine.misread_energy += misread.energy;
       mine.misread_force += misread.force;
       mine.misread_penetration = std::max(mine.misread_penetration, misread.penetration);
       mine.misread_ends += misread.ends;
-    } else if (touches && facet.order == 1 && detail == nullptr) {
-      mine.interpolation_work += reading.work_of_interpolation(f, sampled);
+    } else if (!unseen && facet.order == 1 && detail == nullptr) {
+      if (!shares) reading.sample(f, fine, at_fine);
+      mine.interpolation_work += reading.work_of_interpolation(f, shares ? at_coarse : at_fine);
     }
-    if (touches && !off) continue;
+    if (!unseen) continue;
     sum += squared[f] = found.squared;
     width[f] = found.width;
     if (place.depth > mine.unseen.depth) mine.unseen = place;
@@ -359,7 +360,7 @@ std::string unseen_contact_note(const ContactResult &result, const std::vector<C
   text << std::setprecision(4) << "unseen contact: at (" << at.place[0] << ", " << at.place[1];
   if (dim == 3) text << ", " << at.place[2];
   text << std::setprecision(2) << ") side \"" << options[at.side].side << "\" lies " << at.depth << unit
-       << " inside the foundation, between contact points, so that the contact force lacks it. The facet "
+       << " inside the foundation, between contact points that are open, so that the contact force lacks it. The facet "
           "is "
        << at.facet << unit << " long there; cells of " << at.width / 2 << unit
        << " would see it. Make the mesh finer there, or " << (adapts ? "lower" : "give")

@@ -43,7 +43,6 @@ struct FacetRows {
   int width() const { return 2 * dim + num_columns; }
   const double *place(const LO f, const int a) const { return &row(f, a * width()); }
   const double *displacement(const LO f, const int a) const { return place(f, a) + dim; }
-  Point point(const LO f, const int a) const { return {place(f, a)[0], place(f, a)[1], dim == 3 ? place(f, a)[2] : 0}; }
   double column(const LO f, const int a, const Column which) const { return place(f, a)[2 * dim + which]; }
   double interpolated(LO f, const FacetShape &shape, Column which) const;
 
