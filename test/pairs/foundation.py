@@ -138,8 +138,9 @@ def energy_of(v, xi, hardening, compliance):
     return xi * (v - compliance * xi / 2) + hardening * beyond ** 2 / (2 * (1 + compliance * hardening))
 
 
-def law_violations(contact, points, p, v, w, before, small):
+def law_violations(contact, points, p, v, w, before, small, parts=1):
     """Complaints about contact points. @param v u_nu - g, w dents, before dents of the step before or None
+    @param parts  of the step: the dent may have grown in one of several, before the pressure fell
     @param small  (pressure, length) that count as nothing"""
     limit = points.xi + (contact.hardening * w if contact.hardening else 0.0)
     compliance = 0.0 if math.isinf(contact.stiffness) else 1 / contact.stiffness
@@ -153,7 +154,8 @@ def law_violations(contact, points, p, v, w, before, small):
     }
     if before is not None:
         rules["a dent that shrinks"] = (before - w) / small[1]
-        rules["a dent that grows below the yield limit"] = np.where(w > before + small[1], (limit * (1 - 1e-6) - p) / small[0], 0)
+        if parts == 1:
+            rules["a dent that grows below the yield limit"] = np.where(w > before + small[1], (limit * (1 - 1e-6) - p) / small[0], 0)
     return worst(rules, points.place)
 
 

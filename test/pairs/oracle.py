@@ -203,7 +203,7 @@ class Oracle:
         v = np.einsum("kd,kd->k", state.u[nodes], points.normal) - points.gap
         whole = before is not None and not self.several_meshes()
         contact = self.case.side
-        found = foundation.law_violations(contact, points, state.p[nodes], v, state.dent[nodes], before.dent[nodes] if whole else None, small)
+        found = foundation.law_violations(contact, points, state.p[nodes], v, state.dent[nodes], before.dent[nodes] if whole else None, small, self.parts(state))
         if contact.friction:
             e = self.slip(state, before, nodes, points) if whole and self.parts(state) == 1 else None
             found += foundation.friction_violations(contact.friction, points, state.p[nodes], state.q[nodes], e, small)
