@@ -90,7 +90,7 @@ bool MeshPlanner::nothing_gained(const double eta, const double target, const do
                                  const mesh::Element &element) const
 {
   const double most = static_cast<double>(task_.adapt.max_dofs);
-  if (!(planned_at_limit_ && dofs > plan_rules.share_of_max_dofs * plan_rules.share_of_max_dofs * most)) return false;
+  if (!(planned_at_limit_ && dofs > plan_rules.share_again * plan_rules.share_of_max_dofs * most)) return false;
   const double needed = dofs * growth_for(eta / target, element);
   const double needed_before = before_.dofs * growth_for(before_.eta / target, element);
   return eta > headway_rules.falls * before_.eta ||
@@ -138,7 +138,8 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
     needed_ = dofs * growth_for(eta / target, mesh.element);
   }
   const double most = static_cast<double>(task_.adapt.max_dofs);
-  const double allowed = plan_rules.share_of_max_dofs * most * cells / dofs / ratio;
+  const double share = planned_at_limit_ ? plan_rules.share_again : plan_rules.share_of_max_dofs;
+  const double allowed = share * most * cells / dofs / ratio;
   const double sensible = plan_rules.greatest_excess * cells * growth_for(eta / goal_.bound, mesh.element);
   const double squared_error = goal_.bound * goal_.bound;
   Sizes sizes = new_sizes(d, estimate, {squared_error, sensible, goal_.growth});
