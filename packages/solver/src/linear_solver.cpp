@@ -253,7 +253,14 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
   given_up = false;
   try {
     if (interrupted(*H->getDomainMap()->getComm())) throw Interrupted();
-    const double least = std::max(wanted.residual, options.tolerance);
+    double least = std::max(wanted.residual, options.tolerance);
+    Accuracy to = wanted;
+    if (wanted.goes_on)
+      to.goes_on = [&](const Vector &rough) {
+        if (!wanted.goes_on(rough)) return false;
+        least = std::max(wanted.further, options.tolerance);
+        return true;
+      };
     prepare();
     const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::krylov"));
     const double start = Teuchos::Time::wallTime();
@@ -265,9 +272,8 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
              sparse->renewal_pays(seen.iterations_in_all(least, options.max_iterations) - seen.iterations());
     };
     const GivesUp asked = may_be_sparse ? GivesUp(gives_up) : GivesUp();
-    const KrylovResult done = used->kind == Kind::mixed
-                                  ? mixed->solve(b, x, wanted, asked)
-                                  : krylov.solve(*used->B, H->is_symmetric(), b, x, wanted, asked);
+    const KrylovResult done = used->kind == Kind::mixed ? mixed->solve(b, x, to, asked)
+                                                        : krylov.solve(*used->B, H->is_symmetric(), b, x, to, asked);
     given_up = done.given_up;
     lost_iterations += std::max(0., done.iterations - fair(least));
     used->B->learn(done.iterations, seconds_of_cg.counted);

@@ -91,6 +91,7 @@ LinearSolver::Result TiedSolver::solve(const Held &held, const Vector &b, Vector
   if (size > 0) {
     Accuracy of_held = wanted;
     of_held.residual = std::min(1., target / (2 * size));
+    of_held.goes_on = {}; // x would lack the tied unknowns
     result = held(b_F, x, of_held);
     if (result.broken) return result;
   } else {

@@ -15,6 +15,7 @@ namespace
 
 using namespace rpc;
 using rpc::test::Grid;
+using solver::Accuracy;
 using solver::Krylov;
 using solver::KrylovResult;
 using solver::LinearSolverOptions;
@@ -324,6 +325,41 @@ TEST(Krylov, EndsCGWhereTheErrorInEnergyIsSmallEnough)
   const auto other = krylov.solve(of.B, false, of.b, of.x, {1e-9, 0.1});
   EXPECT_LT(of.grid.relative_residual(of.x, of.b), 1.01e-9) << "GMRES knows no energy";
   EXPECT_EQ(other.energy, 0);
+}
+
+/// It asks once, with an x as good as wanted, and takes as many iterations in all as to the better one at once. Where it does not get there,
+/// the x that was good enough is the result.
+TEST(Krylov, GoesOnInItsKrylovSpaceWhereItIsTold)
+{
+  Case of;
+  constexpr double rough = 1e-3, further = 1e-9;
+  for (const bool is_symmetric : {true, false})
+    for (const bool goes_on : {true, false}) {
+      SCOPED_TRACE(is_symmetric);
+      const RCP<const Operator> H = is_symmetric ? RCP<const Operator>(of.grid.A) : of.H;
+      int asked = 0;
+      Accuracy wanted(rough);
+      wanted.further = further;
+      wanted.goes_on = [&](const Vector &x) {
+        ++asked;
+        EXPECT_LT(residual_of(*H, x, of.b), 1.01 * rough);
+        return goes_on;
+      };
+      const auto solve = [&](const LinearSolverOptions &options, const Accuracy &to) {
+        return Krylov(options, H).solve(of.B, is_symmetric, of.b, of.x, to);
+      };
+      const int iterations[2] = {solve({}, rough).iterations, solve({}, further).iterations};
+      const auto result = solve({}, wanted);
+      EXPECT_TRUE(result.converged) << result.reason;
+      EXPECT_EQ(asked, 1);
+      EXPECT_EQ(result.iterations, iterations[goes_on]);
+      EXPECT_LT(residual_of(*H, of.x, of.b), 1.01 * (goes_on ? further : rough));
+      LinearSolverOptions few;
+      few.max_iterations = iterations[0] + 2;
+      const auto short_of_it = solve(few, wanted);
+      EXPECT_TRUE(short_of_it.converged) << short_of_it.reason;
+      EXPECT_LT(residual_of(*H, of.x, of.b), 1.01 * rough);
+    }
 }
 
 TEST(Krylov, TellsOfAMatrixThatIsNotPositiveDefinite)

@@ -39,6 +39,7 @@ struct TpetraKind {
   using Op = rpc::Operator;
   static RCP<Vectors> vectors(const RCP<Vector> &x) { return x; }
   static RCP<const Op> op(const RCP<const rpc::Operator> &of) { return of; }
+  static RCP<const Vector> vector(const Vectors &of) { return of.getVector(0); }
 };
 
 /// KrylovVectors.
@@ -50,6 +51,7 @@ struct KrylovKind {
     return rcp(new KrylovVectors(x->getMap(), std::vector<RCP<Vector>>{x}));
   }
   static RCP<const Op> op(const RCP<const rpc::Operator> &of) { return rcp(new OnKrylovVectors(of)); }
+  static RCP<const Vector> vector(const Vectors &of) { return dynamic_cast<const KrylovVectors &>(of).vector(0); }
 };
 
 /// Asks before each iteration of GMRES, which applies its preconditioner to no residual. It ends nothing but by an exception.
@@ -57,14 +59,21 @@ template <class Kind>
 class Asking : public Belos::StatusTest<double, typename Kind::Vectors, typename Kind::Op>
 {
 public:
+  using Iteration = Belos::Iteration<double, typename Kind::Vectors, typename Kind::Op>;
   explicit Asking(const std::function<void(int, double)> &ask) : ask_(ask) {}
-  Belos::StatusType checkStatus(Belos::Iteration<double, typename Kind::Vectors, typename Kind::Op> *const at) override
+  Belos::StatusType checkStatus(Iteration *const at) override
   {
     if (!ask_) return Belos::Undefined;
     std::vector<double> norm(1);
     at->getNativeResiduals(&norm); // GMRES' are numbers alone
+    at_ = at;
     ask_(at->getNumIters(), norm[0]);
     return Belos::Undefined;
+  }
+  void add_update(Vector &x) const
+  {
+    const auto update = at_->getCurrentUpdate(); // null before the first iteration
+    if (!update.is_null()) x.update(1., *Kind::vector(*update), 1.);
   }
   Belos::StatusType getStatus() const override { return Belos::Undefined; }
   void reset() override {}
@@ -72,6 +81,7 @@ public:
 
 private:
   const std::function<void(int, double)> &ask_;
+  const Iteration *at_ = nullptr;
 };
 
 template <class Kind>
@@ -87,7 +97,12 @@ public:
   {
     problem_->setRightPrec(Kind::op(preconditioner));
     manager_ = Factory().create(name, list);
-    if (is_gmres(name)) manager_->setDebugStatusTest(rcp(new Asking<Kind>(before_iteration)));
+    if (is_gmres(name)) {
+      asking_ = rcp(new Asking<Kind>(before_iteration));
+      manager_->setDebugStatusTest(asking_);
+      // Others precondition their updates at the end.
+      is_flexible_ = list->isParameter("Flexible Gmres") && list->get<bool>("Flexible Gmres");
+    }
     manager_->setProblem(problem_);
   }
   bool solve(const double tolerance, const Vector &b, Vector &x) override
@@ -104,10 +119,17 @@ public:
   }
   int iterations() const override { return manager_->getNumIters(); }
   double achieved() const override { return manager_->achievedTol(); }
+  bool tells_update() const override { return is_flexible_; }
+  void add_update(Vector &x) const override
+  {
+    if (!asking_.is_null()) asking_->add_update(x);
+  }
 
 private:
   RCP<Problem> problem_;
   RCP<Belos::SolverManager<double, typename Kind::Vectors, typename Kind::Op>> manager_;
+  RCP<Asking<Kind>> asking_; // null but of GMRES
+  bool is_flexible_ = false;
 };
 
 } // namespace

@@ -26,6 +26,10 @@ public:
 
   /// Called before each iteration with the number of those before it and |r|, by GMRES alone. Null: never.
   std::function<void(int iterations, double residual)> before_iteration;
+  /// Whether add_update() can be had.
+  virtual bool tells_update() const = 0;
+  /// x += what GMRES has found since its last restart; in before_iteration alone.
+  virtual void add_update(Vector &x) const = 0;
 };
 
 /// @param name  of Belos' solver factory   @param list  on top of Belos' defaults

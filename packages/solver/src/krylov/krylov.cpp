@@ -60,7 +60,8 @@ public:
       // Belos' CG preconditions a residual before it looks whether the residual is small enough to stop.
       if (norm <= enough) return y.assign(x);
       left = norm / norm_of_right_side;
-      if (wanted.error > 0 && iterations > 0 && error_is_small()) throw Enough();
+      const bool is_good = (wanted.error > 0 && iterations > 0 && error_is_small()) || norm <= asks_at;
+      if (is_good && !goes_on()) throw Enough();
       if (gives_up && gives_up(iterations, left)) throw GivenUp();
     }
     ++iterations;
@@ -72,8 +73,10 @@ public:
 
   const Preconditioner *B = nullptr;
   bool to_residuals = false;
-  double enough = 0; // CG stops at residuals of this norm, which need no preconditioner; 0: not known
-  GivesUp gives_up;  // null: never
+  double enough = 0;             // CG stops at residuals of this norm, which need no preconditioner; 0: not known
+  double asks_at = 0;            // CG asks goes_on() at residuals of this norm, too; 0: it does not
+  std::function<bool()> goes_on; // whether to go on from an x that is as good as wanted
+  GivesUp gives_up;              // null: never
   double norm_of_right_side = 1;
   Accuracy wanted{1};
   const Vector *solution = nullptr, *right_side = nullptr; // x as far as CG has come, from 0, and b
@@ -131,19 +134,40 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
   const Preconditioner::Start start = is_symmetric ? B.start(b) : Preconditioner::Start();
   const RCP<const Vector> rest = start.rest.is_null() ? Teuchos::rcpFromRef(b) : RCP<const Vector>(start.rest);
   const double left = start.rest.is_null() ? 1 : rest->norm2() / b.norm2();
-  const double least = std::min(1., wanted.residual / left);
+  const bool cg_asks = wanted.goes_on && is_symmetric && method.stops_by_residual;
+  bool gmres_asks = wanted.goes_on && method.belos->tells_update();
+  const double rough = std::min(1., wanted.residual / left);
+  const double least = cg_asks || gmres_asks ? std::min(1., wanted.further / left) : rough;
   // Belos divides by |rest|.
   method.preconditioner->enough = method.stops_by_residual ? (1 - rounding.sum) * least * rest->norm2() : 0;
+  method.preconditioner->asks_at = cg_asks ? rough * rest->norm2() : 0;
+  method.preconditioner->goes_on = [&] {
+    if (!cg_asks && !gmres_asks) return false;
+    Vector found(x, Teuchos::Copy);
+    method.belos->add_update(found);
+    auto now = rcp(new Vector(found, Teuchos::Copy));
+    if (!start.x.is_null()) now->update(1., *start.x, 1.);
+    method.preconditioner->asks_at = method.preconditioner->wanted.error = 0;
+    gmres_asks = false;
+    if (wanted.goes_on(*now)) {
+      result.rough = now;
+      return true;
+    }
+    x.assign(found);
+    return false;
+  };
   method.preconditioner->to_residuals = is_symmetric;
   method.preconditioner->B = &B;
   method.preconditioner->gives_up = method.is_cg ? gives_up : GivesUp();
   const double norm_of_b = b.norm2();
   int asked_after = 0;
   method.belos->before_iteration = nullptr;
-  if (gives_up)
+  if (gives_up || gmres_asks)
     method.belos->before_iteration = [&](const int iterations, const double residual) {
       asked_after = iterations;
-      if (gives_up(iterations, residual / norm_of_b)) throw GivenUp();
+      result.residual = residual / norm_of_b;
+      if (gmres_asks && residual <= rough * rest->norm2() && !method.preconditioner->goes_on()) throw Enough();
+      if (gives_up && gives_up(iterations, residual / norm_of_b)) throw GivenUp();
     };
   method.preconditioner->norm_of_right_side = norm_of_b;
   method.preconditioner->iterations = 0;
@@ -161,8 +185,8 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
                       std::to_string(result.iterations) + " iterations";
   } catch (const Enough &) {
     result.converged = true;
-    result.iterations = method.preconditioner->iterations;
-    result.residual = method.preconditioner->left;
+    result.iterations = method.is_cg ? method.preconditioner->iterations : asked_after;
+    if (method.is_cg) result.residual = method.preconditioner->left;
   } catch (const GivenUp &) {
     result.given_up = true;
     result.iterations = method.is_cg ? method.preconditioner->iterations : asked_after;
@@ -187,6 +211,17 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
 KrylovResult Krylov::solve(const Preconditioner &B, const bool is_symmetric, const Vector &b, Vector &x,
                            const Accuracy &wanted, const GivesUp &gives_up)
 {
+  KrylovResult result = solve_once_more(B, is_symmetric, b, x, wanted, gives_up);
+  if (result.rough.is_null() || result.converged || result.given_up) return result;
+  x.assign(*result.rough); // which was good enough
+  result.converged = true;
+  result.broken = false;
+  return result;
+}
+
+KrylovResult Krylov::solve_once_more(const Preconditioner &B, const bool is_symmetric, const Vector &b, Vector &x,
+                                     const Accuracy &wanted, const GivesUp &gives_up)
+{
   if (is_symmetric && wanted.error >= linear_rules.large_error && B.is_exact()) {
     B.apply(b, x);
     KrylovResult result;
@@ -196,20 +231,24 @@ KrylovResult Krylov::solve(const Preconditioner &B, const bool is_symmetric, con
     return result;
   }
   Method &method = is_symmetric ? *of_deck_ : for_any_matrix();
-  const Accuracy possible(std::max(wanted.residual, options_.tolerance), wanted.error, wanted.energy);
+  Accuracy possible = wanted;
+  possible.residual = std::max(wanted.residual, options_.tolerance);
+  possible.further = std::max(wanted.further, options_.tolerance);
   KrylovResult result = iterate(method, is_symmetric, B, b, x, possible, gives_up);
   if (!result.broken || !is_symmetric || !std::isfinite(x.norm2())) return result;
   Vector residual(b, Teuchos::Copy);
   H_->apply(x, residual, Teuchos::NO_TRANS, -1., 1.);
   if (!(energy_error(B, b, residual) <= linear_rules.large_error)) return result;
   Vector move(b.getMap());
-  const double rest = std::max(wanted.residual * b.norm2() / residual.norm2(), options_.tolerance);
+  const double left = result.rough.is_null() ? wanted.residual : wanted.further;
+  const double rest = std::max(left * b.norm2() / residual.norm2(), options_.tolerance);
   KrylovResult more = iterate(method, is_symmetric, B, residual, move, rest, {});
   if (more.converged)
     x.update(1., move, 1.);
   else
     more.reason = result.reason;
   more.broken = false;
+  more.rough = result.rough;
   return more;
 }
 

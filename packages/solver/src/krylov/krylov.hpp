@@ -15,12 +15,13 @@ namespace rpc::solver
 /// What came out of one Krylov iteration.
 struct KrylovResult {
   bool converged = false;
-  bool broken = false;   ///< the method broke down, as on an indefinite or singular matrix
-  bool given_up = false; ///< GivesUp has asked for that
-  int iterations = 0;    ///< 0 where it broke down: they are not to be had
-  double residual = 1;   ///< |r|/|b| by the method's own account; NaN where it broke down
-  double energy = 0;     ///< x . b, about |x|_H^2, where an error was asked for [J]
-  std::string reason{};  ///< why it did not converge, if it did not
+  bool broken = false;       ///< the method broke down, as on an indefinite or singular matrix
+  bool given_up = false;     ///< GivesUp has asked for that
+  int iterations = 0;        ///< 0 where it broke down: they are not to be had
+  double residual = 1;       ///< |r|/|b| by the method's own account; NaN where it broke down
+  double energy = 0;         ///< x . b, about |x|_H^2, where an error was asked for [J]
+  std::string reason{};      ///< why it did not converge, if it did not
+  RCP<const Vector> rough{}; ///< x from which Accuracy::goes_on has it go on; null: it has not
 };
 
 /// Asked before each iteration whether to end it: by how many there were, and what they have left, |r|/|b|. The same on all ranks. Of the
@@ -48,6 +49,8 @@ private:
   class Applied;
   struct Method;
   Method &for_any_matrix();
+  KrylovResult solve_once_more(const Preconditioner &B, bool is_symmetric, const Vector &b, Vector &x,
+                               const Accuracy &wanted, const GivesUp &gives_up);
   KrylovResult iterate(Method &method, bool is_symmetric, const Preconditioner &B, const Vector &b, Vector &x,
                        const Accuracy &wanted, const GivesUp &gives_up);
 

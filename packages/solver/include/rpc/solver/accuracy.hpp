@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "rpc/core/tpetra.hpp"
+
+#include <functional>
+
 namespace rpc::solver
 {
 
@@ -20,6 +24,11 @@ struct Accuracy {
   double error;
   /// |y|_H^2 of a solution y that was found just before, with the same H, and that x corrects; 0: there is none [J].
   double energy;
+
+  /// Asked once, where x is as good as that: whether the same iteration goes on, in its Krylov space, until |b - H x| / |b| is `further`. Not
+  /// every method asks, and the result does not tell whether `further` was reached. Collective; null: it ends there.
+  std::function<bool(const Vector &x)> goes_on = {};
+  double further = 0; ///< < residual
 };
 
 } // namespace rpc::solver
