@@ -96,14 +96,17 @@ KOKKOS_INLINE_FUNCTION SlipBranch slip_instead(const SlipBranch &now, const Alon
   return {Slip::slip, s > 0 ? admissible_friction(q, s).scaled(1 / s) : q.unit()};
 }
 
-/// The lever by which a point may stick, unless it is so short that its penalty would amplify rounding too much.    (12.8a)
-/// @param stiffest  penalty over own stiffness, at most
+/// The lever by which a point may stick, unless it is so short that the standard penalty would amplify rounding too much. A higher penalty is
+/// lowered along it: it goes like 1/|lever|^2.                                                                      (12.8a)
+/// @param standard, stiffest  penalty over own stiffness: by default, at most
 KOKKOS_INLINE_FUNCTION Along lever_at(const SmoothedPoints &s, const LO i, const State next, const double own,
-                                      const double stiffest)
+                                      const double standard, const double stiffest)
 {
   const ContactNodes &c = s.points;
   const Along by = lever(next, c.law(i), NormalAt{c, i}, FreeAt{c.friction, i}, c.dim);
-  return s.penalty(i) <= stiffest * own * by.length() ? by : Along{};
+  const double most = stiffest * own * by.length(), r = s.penalty(i);
+  if (r > most && standard * own > most) return {};
+  return r > most ? by.scaled(math::sqrt(r / most)) : by;
 }
 
 /// (12.8)
@@ -119,7 +122,7 @@ void choose_next_slip(const SmoothedPoints &s, const Vector &u, const ActiveSet 
   const auto violated = choice.violation;
   const auto cannot_stick = choice.cannot_stick;
   const auto levers = choice.lever;
-  const double share = lag_rules.least_held, stiffest = penalty_rules.largest;
+  const double share = lag_rules.least_held, standard = penalty_rules.standard, stiffest = penalty_rules.largest;
   Kokkos::parallel_for(
       "rpc::contact::next_slip", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
         const ContactNodes &c = s.points;
@@ -133,7 +136,7 @@ void choose_next_slip(const SmoothedPoints &s, const Vector &u, const ActiveSet 
                                       at.penetration, admissible(p(i), c.law(i)), own(i), bound, f);
         const double held = prescribed_slip(at.slip, NormalAt{c, i}, FreeAt{c.friction, i}, c.dim).length();
         const bool is_held = own(i) * held > bound;
-        const Along by = lever_at(s, i, next(i), own(i), stiffest);
+        const Along by = lever_at(s, i, next(i), own(i), standard, stiffest);
         if (branch.state == Slip::stick && is_held && by.length() == 0)
           branch = slip_instead(now.branch(i), turned, at.slip, row(traction, i),
                                 friction_bound(admissible(p(i), c.law(i)), f), c.dim);
