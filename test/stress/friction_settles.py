@@ -40,7 +40,7 @@ TIP = {  # pressed on the tip of a cone, between the nodes of a mesh of one cell
     "Steps": {"Times": [1.0]},
 }
 TIP_STEPS = 8  # 12 and a sweep
-BLOCK_STEPS = 31  # of two attempts, the second one from rest; 223 in 13 parts without that one
+BLOCK_STEPS = 32  # of two attempts, the second one from rest; 223 in 13 parts without that one
 
 
 def complaints(rpc, folder, deck, most):

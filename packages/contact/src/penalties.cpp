@@ -24,11 +24,13 @@ KOKKOS_INLINE_FUNCTION bool along_an_axis(const ContactNodes &c, const LO i)
 
 /// The penalty of a point where none is given.
 struct OpenPenalty {
-  double standard = penalty_rules.standard, slanting = penalty_rules.slanting;
+  double standard = penalty_rules.standard, slanting = penalty_rules.slanting,
+         rubbing = penalty_rules.raise * penalty_rules.standard;
 
   KOKKOS_INLINE_FUNCTION double operator()(const ContactNodes &c, const LO i, const double own) const
   {
-    return (along_an_axis(c, i) ? standard : slanting) * own;
+    const bool rubs = c.friction.anywhere && c.dim == 2; // in space directions of slip depend on the penalty
+    return (rubs ? rubbing : along_an_axis(c, i) ? standard : slanting) * own;
   }
 };
 

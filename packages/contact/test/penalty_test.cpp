@@ -111,6 +111,16 @@ TEST(Penalty, TooWeakForFrictionIsThatOfItsOwnChoice)
   }
 }
 
+TEST(Penalty, OfASideInThePlaneWithFrictionIsRaisedFromTheStart)
+{
+  for (const double coefficient : {0., 0.3}) {
+    auto side = touching(0);
+    side.friction_coefficient = ScalarField(coefficient);
+    const Scene scene(std::vector{side});
+    expect_penalties(scene, [&](int, const Point &) { return (coefficient > 0 ? 1e7 : 1e5) * own_stiffness(); });
+  }
+}
+
 TEST(Penalty, RaisedAtOneNodeIsARaiseOnAllRanks)
 {
   // Given at the bound below, left open beside.

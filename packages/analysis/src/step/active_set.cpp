@@ -193,11 +193,17 @@ void ActiveSetLoop::start_over(std::optional<contact::ActiveSetChoice> choice, c
   rough_ = false; // a small residual may be all of the bending
 }
 
+/// (5.8)
+contact::ActiveSetChoice ActiveSetLoop::choose_next(const Vector &u) const
+{
+  return iterate_.choose_active_set(u, std::max(choice_rules.negligible * pressure_tolerance_, rounding));
+}
+
 /// What becomes of the iteration at a point, after the step that led there.
 ActiveSetLoop::Verdict ActiveSetLoop::choose(const Vector &u)
 {
   confirmed_ = false;
-  choice_ = iterate_.choose_active_set(u, std::max(choice_rules.negligible * pressure_tolerance_, rounding)); // (5.8)
+  choice_ = choose_next(u);
   // The active set does not change at first: one accurate solve, which keeps the energy balance to rounding.
   if (choice_->changes == 0 && steps_ == 0) rough_ = false;
   if (choice_->confirmed) {
@@ -332,6 +338,14 @@ solver::Accuracy ActiveSetLoop::wanted() const
   return {std::max(choice_rules.enough * target_, rough) / norm_, rough_ ? choice_rules.rough_error : 0.};
 }
 
+/// Whether the active set would be confirmed, and its pressures good enough, at u - d.
+bool ActiveSetLoop::confirms(const Vector &u, const Vector &d) const
+{
+  Vector at(u, Teuchos::Copy);
+  at.update(-1., d, 1.);
+  return choose_next(at).confirmed && iterate_.pressure_error(at) <= pressure_tolerance_;
+}
+
 /// A step to the minimum for the chosen active set.
 Status ActiveSetLoop::step_to_choice(MinimizationSteps &steps)
 {
@@ -351,16 +365,26 @@ Status ActiveSetLoop::step_to_choice(MinimizationSteps &steps)
     const Status status = steps.stay();
     return status == Status::goes_on ? end_choices(steps, verdict) : status;
   }
-  if (!rough_) { // the remaining correction is small against u: solving for it keeps its relative accuracy       (5.13)
+  // In space the equations of an active set with slip are not linear. What follows Tresca problems goes back to where it began.
+  const bool may_end = rough_ && rubs_ && !turns_ && then_ == Then::newton;
+  if (!rough_ || may_end) { // what is left is small against u: solving for it keeps its relative accuracy        (5.13)
+    start_.update(-1., *u, 1.);
     iterate_.move_origin(*u);
-    start_.putScalar(0);
-    start_dual_ = iterate_.duals().values();
+    if (!rough_) {
+      start_.putScalar(0);
+      start_dual_ = iterate_.duals().values();
+    }
     steps.move_to(u);
   }
   u = Teuchos::null; // a solve needs the memory
 
   const auto direction = rcp(new Vector(F.getMap()));
-  const auto solved = solver::solve_for_direction(steps.context(), F, *direction, wanted()); // (5.9)
+  solver::Accuracy asked = wanted(); // (5.9)
+  if (may_end) {
+    asked.goes_on = [&](const Vector &d) { return confirms(solver::tpetra(steps.at().getX()), d); };
+    asked.further = choice_rules.enough * target_ / norm_;
+  }
+  const auto solved = solver::solve_for_direction(steps.context(), F, *direction, asked);
   if (!solved.converged) { // an active set that leaves the body unheld, or an interrupt
     if (!solved.interrupted) {
       iterate_.duals().reset();

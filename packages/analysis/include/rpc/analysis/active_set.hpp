@@ -78,6 +78,8 @@ private:
   bool newton_hands_over(solver::MinimizationSteps &steps);
   void back_to_start(solver::MinimizationSteps &steps);
   Verdict choose_at(solver::NewtonGroup &at);
+  contact::ActiveSetChoice choose_next(const Vector &u) const;
+  bool confirms(const Vector &u, const Vector &d) const;
   Verdict choose(const Vector &u);
   bool is_new_choice();
   bool may_settle();
