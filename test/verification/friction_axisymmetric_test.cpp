@@ -54,7 +54,8 @@ TEST(FrictionOfACylinder, ThatSticksIsItsShearStress)
 {
   constexpr int cells = 8;
   Assignments deck = sticks.deck("Q1", cells, "0.3");
-  deck.emplace_back("Uzawa->Tolerance=1e-10"); // the default one lets points that stick slip by 1e-7 of what they bear over k (5.10)
+  deck.emplace_back(
+      "Uzawa->Tolerance=1e-10"); // the default one lets points that stick slip by 1e-7 of what they bear over k (5.10)
   const Solution s = solved("loop", deck);
   const auto points = contact_points(s);
   ASSERT_EQ(points.size(), cells + 1u);
