@@ -276,7 +276,7 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
       mine.misread_force += misread.force;
       mine.misread_penetration = std::max(mine.misread_penetration, misread.penetration);
       mine.misread_ends += misread.ends;
-    } else if (!unseen && facet.order == 1 && detail == nullptr) {
+    } else if (!unseen && detail == nullptr) {
       if (!shares) reading.sample(f, fine, at_fine);
       mine.interpolation_work += reading.work_of_interpolation(f, shares ? at_coarse : at_fine);
     }

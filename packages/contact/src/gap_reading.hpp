@@ -37,7 +37,7 @@ struct GapReading {
   /// Of a facet that is_off().
   /// @param modulus, of_surface  of the cell: lambda + 2 mu, and E/(1 - nu^2), by which a surface gives way [Pa]
   Misread read(LO f, double modulus, double of_surface) const;
-  /// The work of the pressure over what the interpolant differs by from a smooth gap [J], in 2D per m; with its sign.          (3.16b)
+  /// The work of the pressure over what the interpolant differs by from the gap [J], in 2D per m; with its sign.          (3.16b)
   /// @param at  samples of the fine lattice
   double work_of_interpolation(LO f, const SampledFacet &at) const;
 

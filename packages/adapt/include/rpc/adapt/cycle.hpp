@@ -100,7 +100,7 @@ struct LeftOpen {
 /// By reading a gap at nodes that jumps or has a kink between them.                                  doc/theory.md (3.16a)
 LeftOpen left_by_misreading(const Cycle &cycle);
 
-/// By that, by a smooth gap's interpolant, and by other data of the contact law that jump between nodes.
+/// By that, by the gap's interpolant, and by other data of the contact law that jump between nodes.
 /// doc/theory.md (3.16b), (10.7b)
 LeftOpen left_by_jumps(const Cycle &cycle);
 

@@ -130,7 +130,7 @@ struct BetweenNodes {
   double misread_force = 0, misread_energy = 0; ///< [N], [J], in 2D per m
   double misread_penetration = 0;               ///< [m]
   double misread_ends = 0; ///< half of the facets whose nodes all bear, and between which contact may end [m^(dim-1)]
-  /// Of facets of order 1 that touch and within which the gap is smooth: the work of the pressures over what the gap's interpolant differs by
+  /// Of other facets that touch: the work of the pressures over what the gap's interpolant differs by
   /// from it, over all sides and ranks, with its sign [J], in 2D per m.                                           (3.16b)
   double interpolation_work = 0;
   /// The least of -e, of (3.15), over the samples of all ranks [m]; infinite where nothing was sampled.
