@@ -62,7 +62,7 @@ class Seldom(RpcTestCase):
   Mesh: {Lower: [0.0, 0.0], Upper: [1.0, 1.0], Cells: [4, 4], Element: P2}
   Material: {Young's Modulus: 1000.0, Poisson's Ratio: 0.3}
   Dirichlet: {top: {X: 0.0, Y: "-0.02*t"}}
-  Contact: {Side: bottom, Normal: "0, -1", Gap: "(x > 0.7 ? 0.004 : 0.05) - 0.07*max(0, 1 - 4*abs(t - 0.5))*exp(-((x - 0.3125)/0.02)^2)"}
+  Contact: {Side: bottom, Normal: "0, -1", Gap: "(x > 0.749 ? 0.004 : 0.05) - 0.07*max(0, 1 - 4*abs(t - 0.5))*exp(-((x - 0.3125)/0.02)^2)"}
   Output: {Exodus: false, CSV: false}
 """
         missed = "at t = 0.5: unseen contact: "

@@ -68,7 +68,7 @@ const SurfaceDetail *detail_of(const ContactOptions &options)
 struct SideSamples {
   const ContactOptions &options;
   const FacetRows &rows;
-  const std::vector<FacetShape> &lattice;
+  const Lattice &lattice;
   bool axisymmetric;
 
   /// @param modulus  lambda + 2 mu of the cell [Pa]   @param least  what is no more than rounding [m]   @param at  the samples, if they are known
@@ -78,11 +78,11 @@ struct SideSamples {
     const double most_allowed = rows.most_allowed(f);
     std::vector<std::pair<double, Point>> inside; // depths and places
     double radii = 0;                             // in axisymmetry the samples count by them
-    const std::size_t run = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(lattice.size()))));
+    const std::size_t run = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(lattice.points.size()))));
     bool near = true;
-    for (std::size_t n = 0; n < lattice.size(); ++n) {
-      const FacetShape &shape = lattice[n];
-      if (n % run == 0) near = some_are_near(f, n, std::min(n + run, lattice.size()));
+    for (std::size_t n = 0; n < lattice.points.size(); ++n) {
+      const FacetShape &shape = lattice.points[n];
+      if (n % run == 0) near = some_are_near(f, n, std::min(n + run, lattice.points.size()));
       if (!near) {
         radii += axisymmetric ? place_at(rows, f, shape)[0] : 1;
         continue;
@@ -97,7 +97,7 @@ struct SideSamples {
       found.place = sample.place;
     }
     if (inside.empty()) return found;
-    const double share = double(inside.size()) / static_cast<double>(lattice.size());
+    const double share = double(inside.size()) / static_cast<double>(lattice.points.size());
     found.width = rows.size(f) * std::pow(share, 1. / (rows.dim - 1));
     for (const auto &[depth, place] : inside)
       found.squared += (axisymmetric ? place[0] : 1) * pushed_out(options, depth, modulus, found.width, place);
@@ -114,8 +114,8 @@ struct SideSamples {
     Bounds places = Bounds::empty();
     double moved = 0;
     for (std::size_t n = first; n < last; ++n) {
-      places.add(difference(place_at(rows, f, lattice[n]), options.obstacle.point));
-      moved = std::max(moved, length(displacement_at(rows, f, lattice[n])));
+      places.add(difference(place_at(rows, f, lattice.points[n]), options.obstacle.point));
+      moved = std::max(moved, length(displacement_at(rows, f, lattice.points[n])));
     }
     return detail->clearance(places) <= moved;
   }
@@ -227,12 +227,15 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     parts = std::max(parts, parts_for(*detail, facet, num_facets, max_all(mesh.comm(), longest)));
   }
   const auto fine = lattice_of(facet, parts), coarse = lattice_of(facet, Density::fewest_parts);
-  // Where a face in space touches on all of it, a few samples show how far the gap bends. What is unseen may be narrow, and so may be the part in the
-  // foundation of a face that touches at one node: these faces share as many samples as a side may have.
-  const bool shares = facet.dim == 2 && detail == nullptr;
-  const auto at_edges = shares ? lattice_of(facet, parts_of(facet, sum_all(mesh.comm(), partly_open))) : fine;
-  const SideSamples samples{options, rows, fine, d.axisymmetric()}, few{options, rows, coarse, d.axisymmetric()},
-      edges{options, rows, at_edges, d.axisymmetric()};
+  const auto touched = lattice_of(facet, parts_with_halves(facet, parts));
+  // The part in the foundation of a face in space that touches at one node may be narrow: these faces share as many samples as a side may have.
+  const auto at_edges =
+      facet.dim == 2 && detail == nullptr
+          ? lattice_of(facet, parts_with_halves(facet, parts_of(facet, sum_all(mesh.comm(), partly_open))))
+          : touched;
+  const bool revolution = d.axisymmetric();
+  const SideSamples samples{options, rows, fine, revolution}, few{options, rows, coarse, revolution},
+      touching{options, rows, touched, revolution}, edges{options, rows, at_edges, revolution};
   const bool searches = facet.dim == 2 && !options.obstacle.exists() && options.gap.bounds;
   const EvaluateShape shape = shape_of(facet);
   const bool triangle = facet.shape == mesh::Shape::simplex;
@@ -243,25 +246,26 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     possible.push_back(samples.most_possible(f, shape, triangle));
     to_search += searches && possible.back() >= 0 && rows.bears_nothing(f) ? 1 : 0;
   }
-  const GapReading reading{options, rows, shares ? coarse : fine, coarse, d.axisymmetric()};
+  const GapReading reading{options, rows, revolution};
   const int most_searched =
       static_cast<int>(Density::searched / std::max(GO(1), sum_all(mesh.comm(), to_search))); // of each facet
   const auto block = to_host(mesh.block);
   const auto lame = to_host(fem::lame_table(d, materials));
   std::vector<double> squared(rows.num_facets(), 0.), width(rows.num_facets(), 0.);
-  SampledFacet at_coarse, at_fine;
-  double sum = 0;
+  SampledFacet sampled;
+  std::vector<PlaceBetweenNodes> places;
+  std::vector<OffInterpolants> off_interpolant(owned.size());
+  double smooth = least; // how far the gap is from its interpolant where it is smooth [m]
   for (std::size_t n = 0; n < owned.size(); ++n) {
     const LO f = owned[n];
     const double lambda = lame(block(rows.cell(f)), 0), mu = lame(block(rows.cell(f)), 1), modulus = lambda + 2 * mu;
-    const bool unseen = rows.bears_nothing(f), partly = rows.is_partly_open(f);
-    const bool all_touches = shares && !unseen && !partly;
-    if (!unseen) reading.sample(f, coarse, at_coarse);
+    const bool touches = !rows.bears_nothing(f), partly = rows.is_partly_open(f);
+    const SideSamples &densely = !touches ? samples : partly ? edges : touching;
+    if (touches) reading.sample(f, densely.lattice, sampled);
     Found found;
     if (possible[n] >= 0) {
-      found =
-          all_touches ? few.look(f, modulus, least, &at_coarse) : (unseen ? samples : edges).look(f, modulus, least);
-      if (unseen && searches && !(found.deepest > 0))
+      found = densely.look(f, modulus, least, touches ? &sampled : nullptr);
+      if (!touches && searches && !(found.deepest > 0))
         if (const auto hidden = find_hidden_part(rows, f, shape, options, triangle, least, most_searched))
           found = found_in(*hidden, options, modulus);
     } else if (possible[n] > -open_by) {
@@ -270,20 +274,32 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     const PlaceBetweenNodes place{found.deepest, found.place, k, found.width, rows.size(f)};
     if (place.depth > mine.deepest.depth) mine.deepest = place;
     mine.smallest_gap = std::min(mine.smallest_gap, -found.largest_excess);
-    if (!unseen && (found.deepest > 0 || partly) && reading.is_off(f, modulus, at_coarse)) {
-      const Misread misread = reading.read(f, modulus, 4 * mu * (lambda + mu) / modulus);
+    const bool looks = touches && (found.deepest > 0 || partly);
+    if (looks && (reading.is_off(f, sampled) || reading.has_deep_node(f, modulus))) {
+      const Misread misread = reading.read(f, modulus, 4 * mu * (lambda + mu) / modulus, sampled);
       mine.misread_energy += misread.energy;
       mine.misread_force += misread.force;
       mine.misread_penetration = std::max(mine.misread_penetration, misread.penetration);
       mine.misread_ends += misread.ends;
-    } else if (!unseen && detail == nullptr) {
-      if (!shares) reading.sample(f, fine, at_fine);
-      mine.interpolation_work += reading.work_of_interpolation(f, shares ? at_coarse : at_fine);
+    } else if (touches && detail == nullptr) {
+      mine.interpolation_work += reading.work_of_interpolation(f, sampled);
     }
-    if (!unseen) continue;
-    sum += squared[f] = found.squared;
-    width[f] = found.width;
-    if (place.depth > mine.unseen.depth) mine.unseen = place;
+    if (touches) off_interpolant[n] = off_interpolants(sampled);
+    if (touches && !off_interpolant[n].hides(0)) smooth = std::max(smooth, off_interpolant[n].whole);
+    squared[f] = found.squared;
+    places.push_back(place);
+  }
+  smooth = max_all(mesh.comm(), smooth);
+  double sum = 0;
+  for (std::size_t n = 0; n < owned.size(); ++n) {
+    const LO f = owned[n];
+    if (!rows.bears_nothing(f) && !off_interpolant[n].hides(smooth)) {
+      squared[f] = 0;
+      continue;
+    }
+    sum += squared[f];
+    width[f] = places[n].width;
+    if (places[n].depth > mine.unseen.depth) mine.unseen = places[n];
   }
   result.between.unseen_squared.push_back(device_values(squared, "rpc::contact::unseen_squared"));
   result.between.unseen_width.push_back(device_values(width, "rpc::contact::unseen_width"));
@@ -360,7 +376,7 @@ std::string unseen_contact_note(const ContactResult &result, const std::vector<C
   text << std::setprecision(4) << "unseen contact: at (" << at.place[0] << ", " << at.place[1];
   if (dim == 3) text << ", " << at.place[2];
   text << std::setprecision(2) << ") side \"" << options[at.side].side << "\" lies " << at.depth << unit
-       << " inside the foundation, between contact points that are open, so that the contact force lacks it. The facet "
+       << " inside the foundation, between contact points, so that the contact force lacks it. The facet "
           "is "
        << at.facet << unit << " long there; cells of " << at.width / 2 << unit
        << " would see it. Make the mesh finer there, or " << (adapts ? "lower" : "give")

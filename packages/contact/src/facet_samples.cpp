@@ -31,28 +31,60 @@ EvaluateShape shape_of(const mesh::Element &facet)
   return evaluate;
 }
 
-std::vector<FacetShape> lattice_of(const mesh::Element &facet, const int parts)
+int parts_with_halves(const mesh::Element &facet, const int parts)
+{
+  const int of_halves = 4 * facet.order;
+  return (parts + of_halves - 1) / of_halves * of_halves;
+}
+
+Lattice lattice_of(const mesh::Element &facet, const int parts)
 {
   const EvaluateShape evaluate = shape_of(facet);
   const bool triangle = facet.dim == 2 && facet.shape == mesh::Shape::simplex;
-  std::vector<FacetShape> lattice;
+  Lattice lattice;
+  std::vector<std::array<int, 2>> steps; // from the first corner
   const int rows = facet.dim == 2 ? parts : 0;
   double all = 0;
   for (int j = 0; j <= rows; ++j)
     for (int i = 0; i <= (triangle ? parts - j : parts); ++i) {
       double X[2] = {double(i) / parts, double(j) / parts};
       for (double &x : X) x = triangle ? x : 2 * x - 1;
-      evaluate(X, lattice.emplace_back());
+      evaluate(X, lattice.points.emplace_back());
+      steps.push_back({i, j});
       // Of the triangles or quadrilaterals around it, 6 or 4 inside.
       const int edges = triangle ? (i == 0) + (j == 0) + (i + j == parts) : 0;
-      double &share = lattice.back().share;
+      double &share = lattice.points.back().share;
       if (triangle)
         share = edges == 0 ? 6 : edges == 1 ? 3 : 1;
       else
         share = (i % parts == 0 ? 1 : 2) * (rows == 0 || j % rows == 0 ? 1 : 2);
       all += share;
     }
-  for (FacetShape &point : lattice) point.share /= all;
+  for (FacetShape &point : lattice.points) point.share /= all;
+  if (parts != parts_with_halves(facet, parts)) return lattice;
+  const auto index = [&](const int i, const int j) { return j * (parts + 1) + i - (triangle ? j * (j - 1) / 2 : 0); };
+  for (std::size_t n = 0; n < steps.size(); ++n)
+    for (int a = 0; a < FacetShape::most_nodes; ++a)
+      if (lattice.points[n].value[a] > 1 - 1e-9) lattice.node[a] = static_cast<int>(n);
+  // A half begins at a corner of its own. The middle one of a triangle is turned around.
+  const int middle = parts / 2;
+  for (int half = 0; half < (facet.dim == 2 ? 4 : 2); ++half) {
+    const int i = half % 2 * middle, j = half / 2 * middle;
+    const bool turned = triangle && half == 3;
+    Lattice::Nodes &nodes = lattice.of_half.emplace_back();
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      const auto [right, up] = steps[lattice.node[a]];
+      nodes[a] = turned ? index(i - right / 2, j - up / 2) : index(i + right / 2, j + up / 2);
+    }
+  }
+  for (const auto &[i, j] : steps) {
+    const int right = std::min(i / middle, 1), up = std::min(j / middle, 1);
+    const bool turned = triangle && right + up == 0 && i + j > middle;
+    const int half = turned ? 3 : std::min(right + 2 * up, triangle ? 2 : 3);
+    lattice.half.push_back(half);
+    lattice.alike.push_back(turned ? index(2 * (middle - i), 2 * (middle - j))
+                                   : index(2 * (i - half % 2 * middle), 2 * (j - half / 2 * middle)));
+  }
   return lattice;
 }
 

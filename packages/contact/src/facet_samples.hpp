@@ -6,6 +6,7 @@
 #include "rpc/contact/result.hpp"
 #include "rpc/fem/discretization.hpp"
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -24,8 +25,21 @@ using EvaluateShape = std::function<void(const double *X, FacetShape &)>;
 EvaluateShape shape_of(const mesh::Element &facet);
 
 /// A lattice of points of a facet's reference cell, the vertices among them, with the shares of the trapezoidal rule.
+struct Lattice {
+  using Nodes = std::array<int, FacetShape::most_nodes>;
+
+  std::vector<FacetShape> points;
+  // Where parts_with_halves() are the parts: of the facet's halves, in space four, which are facets of the same element.
+  Nodes node{};               // which points are the nodes of the facet
+  std::vector<Nodes> of_half; // (halves) the nodes of each
+  std::vector<int> half;      // (points) where each lies
+  std::vector<int> alike;     // (points) the point that lies in the facet as this one in its half
+};
+
 /// @param parts  into which the lattice divides an edge
-std::vector<FacetShape> lattice_of(const mesh::Element &facet, int parts);
+Lattice lattice_of(const mesh::Element &facet, int parts);
+/// The fewest, but no fewer than some, with which a lattice has the nodes of halves and points between them.
+int parts_with_halves(const mesh::Element &facet, int parts);
 
 /// Facets of a side, each with what its nodes have: the place [m], the displacement [m], and the columns.
 struct FacetRows {
@@ -43,6 +57,7 @@ struct FacetRows {
   int width() const { return 2 * dim + num_columns; }
   const double *place(const LO f, const int a) const { return &row(f, a * width()); }
   const double *displacement(const LO f, const int a) const { return place(f, a) + dim; }
+  Point point(const LO f, const int a) const { return {place(f, a)[0], place(f, a)[1], dim == 3 ? place(f, a)[2] : 0}; }
   double column(const LO f, const int a, const Column which) const { return place(f, a)[2 * dim + which]; }
   double interpolated(LO f, const FacetShape &shape, Column which) const;
 

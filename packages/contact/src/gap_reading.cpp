@@ -8,39 +8,68 @@
 namespace rpc::contact
 {
 
-double GapReading::penetration_at_sample(const LO f, const FacetShape &shape, const FacetSample &sample) const
+double GapReading::penetration_at_sample(const LO f, const SampledFacet &at, const std::size_t n) const
 {
-  return penetration_at(sample, options) - rows.interpolated(f, shape, FacetRows::dent);
+  return at.penetration[n] - rows.interpolated(f, at.lattice->points[n], FacetRows::dent);
 }
 
-void GapReading::sample(const LO f, const std::vector<FacetShape> &lattice, SampledFacet &found) const
+void GapReading::sample(const LO f, const Lattice &lattice, SampledFacet &found) const
 {
   const double most_allowed = rows.most_allowed(f);
+  found.lattice = &lattice;
   found.points.clear();
   found.penetration.clear();
-  for (const FacetShape &shape : lattice) {
+  for (const FacetShape &shape : lattice.points) {
     found.points.push_back(sample_at(rows, f, shape, options, most_allowed));
     found.penetration.push_back(penetration_at(found.points.back(), options));
   }
 }
 
-bool GapReading::is_off(const LO f, const double modulus, const SampledFacet &at) const
+bool GapReading::has_deep_node(const LO f, const double modulus) const
 {
-  const double compliance = rows.size(f) / modulus;
-  for (int a = 0; a < rows.nodes; ++a)
-    if (rows.column(f, a, FacetRows::bearing) < 0 &&
-        rows.column(f, a, FacetRows::penetration) > compliance * rows.column(f, a, FacetRows::pressure))
+  for (int a = 0; a < rows.nodes; ++a) {
+    if (!(rows.column(f, a, FacetRows::bearing) < 0)) continue;
+    if (rows.column(f, a, FacetRows::penetration) > rows.size(f) / modulus * rows.column(f, a, FacetRows::pressure))
       return true;
+  }
+  return false;
+}
+
+bool OffInterpolants::hides(const double smooth) const
+{
+  return halves * std::sqrt(8.) > std::max(whole, smooth);
+}
+
+OffInterpolants off_interpolants(const SampledFacet &at)
+{
+  const Lattice &lattice = *at.lattice;
+  const std::vector<double> &v = at.penetration;
+  OffInterpolants off;
+  for (std::size_t n = 0; n < v.size(); ++n) {
+    if (!std::isfinite(v[n])) return {}; // the obstacle is missed
+    const Lattice::Nodes &in_half = lattice.of_half[lattice.half[n]];
+    double whole = v[n], half = v[n];
+    for (std::size_t a = 0; a < in_half.size(); ++a) {
+      whole -= lattice.points[n].value[a] * v[lattice.node[a]];
+      half -= lattice.points[lattice.alike[n]].value[a] * v[in_half[a]];
+    }
+    off.whole = std::max(off.whole, std::abs(whole));
+    off.halves = std::max(off.halves, std::abs(half));
+  }
+  return off;
+}
+
+bool GapReading::is_off(const LO f, const SampledFacet &at) const
+{
   double least = std::numeric_limits<double>::infinity(), most = -least, furthest = 0;
   for (int a = 0; a < rows.nodes; ++a) {
     least = std::min(least, rows.column(f, a, FacetRows::penetration));
     most = std::max(most, rows.column(f, a, FacetRows::penetration));
   }
-  for (std::size_t n = 0; n < coarse.size(); ++n) {
-    const FacetShape &shape = coarse[n];
-    const double v = at.penetration[n] - rows.interpolated(f, shape, FacetRows::dent);
+  for (std::size_t n = 0; n < at.lattice->points.size(); ++n) {
+    const double v = penetration_at_sample(f, at, n);
     if (!std::isfinite(v)) return false;
-    furthest = std::max(furthest, std::abs(v - rows.interpolated(f, shape, FacetRows::penetration)));
+    furthest = std::max(furthest, std::abs(v - rows.interpolated(f, at.lattice->points[n], FacetRows::penetration)));
   }
   return furthest > off * (most - least);
 }
@@ -48,10 +77,9 @@ bool GapReading::is_off(const LO f, const double modulus, const SampledFacet &at
 double GapReading::work_of_interpolation(const LO f, const SampledFacet &at) const
 {
   double work = 0, weights = 0;
-  for (std::size_t n = 0; n < fine.size(); ++n) {
-    const FacetShape &shape = fine[n];
-    const double weight = shape.share * (axisymmetric ? at.points[n].place[0] : 1);
-    const double v = at.penetration[n] - rows.interpolated(f, shape, FacetRows::dent);
+  for (std::size_t n = 0; n < at.lattice->points.size(); ++n) {
+    const FacetShape &shape = at.lattice->points[n];
+    const double weight = shape.share * (axisymmetric ? at.points[n].place[0] : 1), v = penetration_at_sample(f, at, n);
     const double off = rows.interpolated(f, shape, FacetRows::penetration) - v;
     if (!std::isfinite(off)) return 0; // the obstacle is missed
     work += weight * rows.interpolated(f, shape, FacetRows::pressure) * off;
@@ -67,16 +95,14 @@ Foundation GapReading::law(const Point &x, const double dent, const double layer
           layer + 1 / options.stiffness(x)};
 }
 
-Misread GapReading::read(const LO f, const double modulus, const double of_surface) const
+Misread GapReading::read(const LO f, const double modulus, const double of_surface, const SampledFacet &at) const
 {
   const double layer = rows.size(f) / modulus;
   double energy[FacetShape::most_nodes], pressure[FacetShape::most_nodes];
   double low = std::numeric_limits<double>::infinity(), high = 0;
   for (int a = 0; a < rows.nodes; ++a) {
-    Point x{};
-    std::copy_n(rows.place(f, a), rows.dim, x.begin());
     const double p = rows.column(f, a, FacetRows::pressure);
-    const Foundation in_series = law(x, rows.column(f, a, FacetRows::dent), layer);
+    const Foundation in_series = law(rows.point(f, a), rows.column(f, a, FacetRows::dent), layer);
     const double v = rows.column(f, a, FacetRows::penetration) + layer * p;
     energy[a] = foundation_energy(v, in_series);
     pressure[a] = pressure_at(v, in_series);
@@ -86,13 +112,14 @@ Misread GapReading::read(const LO f, const double modulus, const double of_surfa
   const double moved = (high - low) * rows.size(f) / (2 * of_surface); // by pressures that jump half a facet further
   Misread found;
   double weights = 0;
-  for (const FacetShape &shape : fine) {
-    const FacetSample sample = sample_at(rows, f, shape, options, 0);
-    const double weight = shape.share * (axisymmetric ? sample.place[0] : 1);
+  for (std::size_t n = 0; n < at.lattice->points.size(); ++n) {
+    const FacetShape &shape = at.lattice->points[n];
+    const Point &place = at.points[n].place;
+    const double weight = shape.share * (axisymmetric ? place[0] : 1);
     const double dent = rows.interpolated(f, shape, FacetRows::dent);
-    const double v = penetration_at_sample(f, shape, sample) + layer * rows.interpolated(f, shape, FacetRows::pressure);
+    const double v = penetration_at_sample(f, at, n) + layer * rows.interpolated(f, shape, FacetRows::pressure);
     if (!std::isfinite(v)) return {};
-    const Foundation in_series = law(sample.place, dent, layer);
+    const Foundation in_series = law(place, dent, layer);
     const double p = pressure_at(v, in_series);
     double off_energy = foundation_energy(v, in_series), off_force = p;
     for (int a = 0; a < rows.nodes; ++a) {

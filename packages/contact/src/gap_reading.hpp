@@ -17,34 +17,45 @@ struct Misread {
 
 /// The points of a lattice on a facet, and how deep each lies in the foundation that has no dents [m].
 struct SampledFacet {
+  const Lattice *lattice = nullptr;
   std::vector<FacetSample> points;
   std::vector<double> penetration;
 };
+
+/// How far the gap is from its interpolants [m], at most.                                                         (3.15a)
+struct OffInterpolants {
+  double whole = 0, halves = 0; // on a facet and on its halves
+
+  /// Whether something of the gap is narrower than the facet: halves would follow it hardly better.
+  /// @param smooth  how far the gap is from its interpolant on other facets, where it is smooth [m]
+  bool hides(double smooth) const;
+};
+OffInterpolants off_interpolants(const SampledFacet &at);
 
 /// Of facets that bear a pressure what lies between their nodes: nodal quadrature has the gap's interpolant there.
 struct GapReading {
   const ContactOptions &options;
   const FacetRows &rows;
-  const std::vector<FacetShape> &fine, &coarse;
   bool axisymmetric;
 
-  /// The samples of one of the two lattices.
-  void sample(LO f, const std::vector<FacetShape> &lattice, SampledFacet &found) const;
+  /// The samples of a lattice.
+  void sample(LO f, const Lattice &lattice, SampledFacet &found) const;
   /// Whether samples are far from what the nodes show: the gap jumps, or has a kink. NaN and infinity, where the obstacle is missed, are not.
-  /// So it is where a node without weight, which nodal quadrature does not see, lies deeper in the foundation than its pressure explains.
-  /// @param modulus  of the cell: lambda + 2 mu [Pa]   @param at  samples of the coarse lattice
-  bool is_off(LO f, double modulus, const SampledFacet &at) const;
-  /// Of a facet that is_off().
+  bool is_off(LO f, const SampledFacet &at) const;
+  /// Whether a node without weight, which nodal quadrature does not see, lies deeper in the foundation than its pressure explains.
+  /// @param modulus  of the cell: lambda + 2 mu [Pa]
+  bool has_deep_node(LO f, double modulus) const;
+  /// Of a facet that is_off() or has_deep_node().
   /// @param modulus, of_surface  of the cell: lambda + 2 mu, and E/(1 - nu^2), by which a surface gives way [Pa]
-  Misread read(LO f, double modulus, double of_surface) const;
+  Misread read(LO f, double modulus, double of_surface, const SampledFacet &at) const;
   /// The work of the pressure over what the interpolant differs by from the gap [J], in 2D per m; with its sign.          (3.16b)
-  /// @param at  samples of the fine lattice
   double work_of_interpolation(LO f, const SampledFacet &at) const;
 
 private:
   // Of the range of the gap at the nodes. Between nodes beside a jump it is off by a half or more, on a smooth slope by little.
   static constexpr double off = 0.25;
-  double penetration_at_sample(LO f, const FacetShape &shape, const FacetSample &sample) const;
+  /// Beyond the dents [m].
+  double penetration_at_sample(LO f, const SampledFacet &at, std::size_t n) const;
   /// The foundation with a layer of the body in series.
   Foundation law(const Point &x, double dent, double layer) const;
 };

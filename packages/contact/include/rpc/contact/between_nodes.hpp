@@ -18,7 +18,8 @@ namespace rpc::contact
 ///     e(x) = u_nu(x) - g(x) - max(w + v+, 0)(x)                                                          doc/theory.md (3.15)
 ///
 /// is how much deeper a sample lies in the foundation than the interpolation of what the contact points of its facet have been pressed in.
-/// A facet is *unseen* where e > 0 at a sample although no contact point of it bears a pressure: contact is there and the mesh does not see it.
+/// Contact is *unseen* on a facet where e > 0 at a sample although no contact point of it bears a pressure, or where something of the gap is
+/// narrower than the facet, (3.15a): contact is there and the mesh does not see it.
 ///
 /// Fills `result.between` and the numbers of `result.sides` and `result.total` that belong to it. Collective.
 /// @param sides      that the contact nodes were made from

@@ -121,7 +121,7 @@ struct PlaceBetweenNodes {
 
 /// What samples between the contact points show.
 struct BetweenNodes {
-  PlaceBetweenNodes deepest, unseen; ///< of all facets, and of those of which no contact point bears a pressure
+  PlaceBetweenNodes deepest, unseen;                ///< of all facets, and of those where it is unseen (3.15)
   std::vector<DeviceView<double *>> unseen_squared; ///< (sides; facets) the part of each in twice `unseen_energy` [J]
   std::vector<DeviceView<double *>>
       unseen_width; ///< (sides; facets) see PlaceBetweenNodes, 0 where nothing is unseen [m]
