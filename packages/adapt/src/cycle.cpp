@@ -219,12 +219,13 @@ double error_of_gap(const std::vector<Cycle> &cycles, const std::vector<double> 
 /// show.                                                                                                         (10.7e)
 void judge_open_body(const Cycle &last, const double error_of_gap, ObservedErrors &errors)
 {
-  if (last.contact.contact_length > 0) return;
-  const bool open = last.smallest_gap > error_of_gap;
+  const bool touches = last.contact.contact_length > 0, open = !touches && last.smallest_gap > error_of_gap;
+  // All pressures together may be no more than the error of the force.                                           (10.7h)
+  if (touches && !(last.contact.max_pressure * last.contact.contact_length <= errors.contact_force)) return;
   if (open && length(last.contact.force) == 0) errors.contact_force = 0;
   const auto set = [&](double &bar, const char *const key) {
     bar = open ? 0 : std::numeric_limits<double>::quiet_NaN();
-    open ? void(errors.unknown.erase(key)) : void(errors.unknown[key] = may_touch);
+    open ? void(errors.unknown.erase(key)) : void(errors.unknown[key] = touches ? may_be_open : may_touch);
   };
   set(errors.max_pressure, "max_pressure");
   set(errors.contact_pressure, "contact_pressure_l2_relative");

@@ -360,6 +360,19 @@ TEST(ErrorBars, OfABodyThatDoesNotTouchAreZeroWhereItsGapIsKnownBetterThanThat)
   }
 }
 
+TEST(ErrorBars, OfPressuresThatAreAllWithinTheErrorOfTheContactForceAreUnknown)
+{
+  // 30 Pa over 1e-3 m are 0.03 N at most; the force has changed by 1 N, and falls with the estimate: 0.25 N are left.
+  std::vector<Cycle> cycles = {mesh(0.1, 1.02, 30), mesh(0.02, 0.02, 30)};
+  cycles.back().contact.contact_length = 1e-3;
+  const auto errors = observed_errors(cycles);
+  EXPECT_NEAR(errors.contact_force, 0.25, 0.01);
+  EXPECT_TRUE(std::isnan(errors.max_pressure) && std::isnan(errors.contact_length));
+  EXPECT_EQ(errors.unknown.at("max_pressure"), adapt::may_be_open);
+  cycles.back().contact.contact_length = 1e-2; // 0.3 N
+  EXPECT_FALSE(std::isnan(observed_errors(cycles).max_pressure));
+}
+
 TEST(ErrorBars, OfAPenetrationThatHasJustBegunGoWithThoseOfThePressure)
 {
   std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.05, 10, 30)};

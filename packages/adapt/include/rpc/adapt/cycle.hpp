@@ -113,6 +113,8 @@ inline constexpr const char *one_mesh = "one mesh shows no change";             
 
 inline constexpr const char *may_touch =
     "nothing touches on this mesh, and the smallest gap that is left is within its error"; ///< a reason in `unknown`
+inline constexpr const char *may_be_open =
+    "all pressures together are within the error of the contact force, so that the body may not touch"; ///< the same
 
 /// Which forces the load alone fixes.
 struct FixedByLoad {
