@@ -4,12 +4,11 @@
 import subprocess
 import unittest
 
-import numpy as np
-
 from rpc_run import PROGRAM, RANKS, WrittenDeckTestCase
 
 try:
     import netCDF4
+    import numpy as np
 except ImportError:
     netCDF4 = None
 
