@@ -12,6 +12,7 @@
 #include <initializer_list>
 #include <memory>
 #include <thread>
+#include <utility>
 
 #ifdef HAVE_MPI
 #include <mpi.h>
@@ -26,6 +27,7 @@ std::atomic<int> received(0); // on this rank; signal handlers set it
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler must not wait for a lock");
 int agreed = 0;           // on all ranks
 bool left_behind = false; // work goes on
+std::function<bool()> asked_of = [] { return received.load() != 0; };
 
 struct sigaction action_of(void (*handler)(int))
 {
@@ -90,7 +92,14 @@ void throw_if_interrupted(const Teuchos::Comm<int> &comm, const std::string &sta
 
 void throw_if_asked(const std::string &state)
 {
-  if (received.load() != 0) throw Error(ExitCode::not_converged, interruption() + " " + state);
+  if (asked_of()) throw Error(ExitCode::not_converged, interruption() + " " + state);
+}
+
+AskedOf::AskedOf(std::function<bool()> any) : before_(std::exchange(asked_of, std::move(any))) {}
+
+AskedOf::~AskedOf()
+{
+  asked_of = std::move(before_);
 }
 
 bool ended_before_interrupt(const Teuchos::Comm<int> &comm, const std::function<void()> &work)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/core/on_root.hpp"
 
+#include "rpc/core/interrupt.hpp"
 #include "rpc/core/message.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
@@ -12,6 +13,9 @@ namespace rpc
 
 namespace
 {
+
+/// What rank 0 tells the others, beside the code of an error.
+enum Told : int { no_error = -1, are_you_asked_to_stop = -2 };
 
 /// What work has thrown.
 struct Failure {
@@ -36,9 +40,24 @@ Failure failure_of(const ExitCode default_code, const std::function<void()> &wor
 
 void on_root(const Teuchos::Comm<int> &comm, const ExitCode default_code, const std::function<void()> &work)
 {
-  const Failure failure = comm.getRank() == 0 ? failure_of(default_code, work) : Failure{std::nullopt, default_code};
-  int shared_code = failure.message ? static_cast<int>(failure.code) : -1; // -1: no error
+  int shared_code = no_error;
+  Failure failure{std::nullopt, default_code};
+  if (comm.getRank() == 0) {
+    std::optional<AskedOf> all_ranks; // of a comm of this rank alone it is for the one around it to ask
+    if (comm.getSize() > 1)
+      all_ranks.emplace([&comm] {
+        int code = are_you_asked_to_stop;
+        Teuchos::broadcast(comm, 0, Teuchos::outArg(code));
+        return interrupted(comm);
+      });
+    failure = failure_of(default_code, work);
+    if (failure.message) shared_code = static_cast<int>(failure.code);
+  }
   Teuchos::broadcast(comm, 0, Teuchos::outArg(shared_code));
+  while (shared_code == are_you_asked_to_stop) { // on the other ranks: rank 0 still works
+    interrupted(comm);
+    Teuchos::broadcast(comm, 0, Teuchos::outArg(shared_code));
+  }
   if (shared_code >= 0) throw_if_any(comm, static_cast<ExitCode>(shared_code), failure.message);
 }
 

@@ -2,6 +2,7 @@
 #include "rpc/core/interrupt.hpp"
 
 #include "expect_error.hpp"
+#include "rpc/core/on_root.hpp"
 
 #include <Tpetra_Core.hpp>
 #include <csignal>
@@ -28,7 +29,12 @@ TEST(Interrupt, OfOneRankStopsAllAndTheNextSignalHasItsDefaultAction)
   EXPECT_FALSE(rpc::interrupted(*comm));
   EXPECT_NO_THROW(rpc::throw_if_interrupted(*comm, "here"));
   const bool asked = comm->getRank() == comm->getSize() - 1;
+  const auto work_of_root = [] {
+    for (int look = 0; look < 3; ++look) rpc::throw_if_asked("on the first rank");
+  };
+  EXPECT_NO_THROW(rpc::on_root(*comm, rpc::ExitCode::internal_error, work_of_root));
   if (asked) std::raise(SIGTERM);
+  EXPECT_THROW(rpc::on_root(*comm, rpc::ExitCode::internal_error, work_of_root), rpc::Error);
   EXPECT_TRUE(rpc::interrupted(*comm));
   EXPECT_TRUE(rpc::interrupted(*comm));
   const bool below_mpirun = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr;

@@ -24,8 +24,21 @@ std::string interruption();
 /// @param state  how far the run is, for the message: "before ..., no results are written"
 void throw_if_interrupted(const Teuchos::Comm<int> &comm, const std::string &state);
 
-/// The same of this rank alone, for work of one rank that waits for another process, within on_root().
+/// The same for work of one rank that waits for another process: within on_root() of all ranks of its comm, else of this rank alone.
 void throw_if_asked(const std::string &state);
+
+/// While it lives, `any` tells throw_if_asked() whether a rank has been asked to stop.
+class AskedOf
+{
+public:
+  explicit AskedOf(std::function<bool()> any);
+  ~AskedOf();
+  AskedOf(const AskedOf &) = delete;
+  AskedOf &operator=(const AskedOf &) = delete;
+
+private:
+  std::function<bool()> before_;
+};
 
 /// Does work that cannot look for a request to stop itself, such as a library's, and looks meanwhile: the work has a thread of its own.
 /// On several ranks that takes an MPI that allows calls from several threads; else the request is seen after the work. Collective on comm.
