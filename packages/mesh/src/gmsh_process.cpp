@@ -182,10 +182,14 @@ GmshContents run_gmsh(const std::string &where, const GmshRequest &request)
                "Write it anew, best as STEP, or give a mesh of it");
   std::string end = "ended without a mesh";
   if (status && WIFSIGNALED(*status)) end = std::string("broke down (") + strsignal(WTERMSIG(*status)) + ")";
+  const MeshFormat format = format_of(request.file);
   RPC_REQUIRE_CODE(!bytes.empty() && (!status || *status == 0), ExitCode::bad_mesh,
                    where << "gmsh " << end
-                         << (format_of(request.file) == MeshFormat::by_gmsh
+                         << (format == MeshFormat::by_gmsh
                                  ? ", as it does on damaged files. Write it anew, best as .msh or Exodus"
+                             : format == MeshFormat::shapes
+                                 ? ", as it does on damaged files, or when memory runs out or sizes are absurd. Write "
+                                   "it anew, best as STEP"
                                  : ", as it does when memory runs out or when sizes or numbers are absurd"));
   return unpacked_contents(bytes);
 }
