@@ -45,7 +45,7 @@ ActiveSetLoop::ActiveSetLoop(contact::Iterate &iterate, const ActiveSetTolerance
   path_ = Path::behind; // it knows no friction
   turns_ = iterate_.points().dim == 3;
   confirmed_headway_ = Headway({headway_rules.falls, turns_ ? choice_rules.most_idle_turns : 0});
-  headway_ = within(static_cast<int>(choice_rules.most_left));
+  headway_ = within(choice_rules.most_with_friction);
 }
 
 void ActiveSetLoop::starts_predicted(const FoundBy coarser, MakeCoarseChoice coarse_choice)
@@ -142,7 +142,7 @@ bool ActiveSetLoop::newton_hands_over(MinimizationSteps &steps)
   const Vector &u = solver::tpetra(steps.at().getX());
   const solver::NewtonContext &context = steps.context();
   ++newton_.steps;
-  newton_.left *= std::max<double>(solver::newton_rules.largest_residual, std::abs(1 - context.step_length));
+  newton_.left *= std::max<double>(solver::newton_rules.forcing, std::abs(1 - context.step_length));
   newton_.short_steps += context.step_length < solver::newton_rules.cut_short;
   const bool has_settled = std::abs(context.step_length - 1) <= solver::newton_rules.to_the_minimum &&
                            context.functional.piece(u) == context.piece;
@@ -151,7 +151,7 @@ bool ActiveSetLoop::newton_hands_over(MinimizationSteps &steps)
     take_over(u, path_rules.trial_changes);
     return true;
   }
-  const bool is_blocked = newton_.short_steps >= contact::interior_rules.many_short_steps;
+  const bool is_blocked = newton_.short_steps >= choice_rules.most_cut_short;
   const bool is_slow = newton_.steps > 1 && newton_.left > std::pow(1 - solver::newton_rules.full_step, newton_.steps);
   if (path_ == Path::ahead && (is_blocked || is_slow)) {
     take_path(u);
@@ -258,7 +258,7 @@ bool ActiveSetLoop::may_settle()
   const double overshoot = choice_->overshoot, infinity = std::numeric_limits<double>::infinity();
   const double lever = overshoot < 1 ? overshoot / (1 - overshoot) : infinity;
   const bool creeps = lever > 0 && lever < levers_[1] && levers_[0] < levers_[2];
-  const bool is_near = creeps && 2 * lever <= choice_rules.fewest_to_tell * (levers_[1] - lever);
+  const bool is_near = creeps && 2 * lever <= choice_rules.most_left * (levers_[1] - lever);
   levers_ = {lever, levers_[0], levers_[1]};
   if (before == 0) return true; // not by a solve, but by where it starts
   const auto number = static_cast<double>(changes), fewest = static_cast<double>(fewest_changes_);

@@ -24,7 +24,7 @@ bool is_enough(const contact::Iterate &iterate, const solver::NewtonGroup &at, c
   Vector G = gradient_of_set(iterate, at);
   G.update(-1., solver::tpetra(at.getF()), 1.);
   return at.getNormF() <= choice_rules.ended_by_rounding * norm_before &&
-         G.norm2() <= solver::newton_rules.largest_residual * at.getNormF();
+         G.norm2() <= choice_rules.same_gradient * at.getNormF();
 }
 
 } // namespace

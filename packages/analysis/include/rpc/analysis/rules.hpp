@@ -18,9 +18,10 @@ struct ChoiceRules {
   Rule<int> most_visits{3, "choice.most_visits", "visits of one active set, friction in space: slip has turned meanwhile [-]", "not measured"};
   Rule<double> first_part{0.5, "choice.first_part", "part of the changes that is tried first where an active set with friction came back [-]",
                           "not measured"};
-  Rule<double> most_left{10, "choice.most_left", "predicted changes to go that count as progress, and choices with friction, with progress or not [choices]",
+  Rule<double> most_left{10, "choice.most_left", "predicted to go, by the fall of changes or by the edge's way, that count as progress [choices]",
                          "measurements.md: Limits on active-set updates"};
-  Rule<int> fewest_to_tell{4, "choice.fewest_to_tell", "choices that a slow edge gets, before it may end them and predicted to go; then a coarser mesh chooses without overshoot [-]",
+  Rule<int> most_with_friction{10, "choice.most_with_friction", "choices with friction, whose changes predict nothing [-]", "measurements.md: Ablation of all rules"};
+  Rule<int> fewest_to_tell{4, "choice.fewest_to_tell", "choices until their rate is judged: a slow edge ends them, a coarser mesh chooses without overshoot [-]",
                            "measurements.md: Limits on active-set updates"};
   Rule<double> much{0.5, "choice.much", "overshoot with which a choice without progress counts twice, and a coarser mesh chooses [-]",
                     "theory.md (5.8a): bodies of equal sides stay below"};
@@ -42,8 +43,11 @@ struct ChoiceRules {
   Rule<double> part_of_scale{0.25, "choice.part_of_scale", "scale of the coarser mesh's compliance over the least observed one [-]",
                              "theory.md (5.8d)"};
   // When Newton's method hands over
+  Rule<int> most_cut_short{3, "choice.most_cut_short", "its steps that end at a kink at once [-]", "measurements.md: Ablation of all rules"};
   Rule<double> ended_by_rounding{1e-3, "choice.ended_by_rounding",
                                  "residual over that before the step for the last active set: the step is enough [-]", "not measured"};
+  Rule<double> same_gradient{0.1, "choice.same_gradient",
+                             "and at most this part of it is due to states that are not those of the last active set [-]; off: 1e9", "not measured"};
   // Inexact solves
   Rule<double> rough_error{2e-4, "choice.rough_error", "error in energy that is enough instead [-]",
                            "theory.md (5.9): 1e-2 costs thin bodies half a step"};

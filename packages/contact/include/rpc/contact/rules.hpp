@@ -25,9 +25,7 @@ struct InteriorRules {
   // and not the load: the path restarts with a larger pressure. A few steps are short on any path.
   Rule<double> short_step{0.25, "interior.short_step", "length of a short step [-]", "doc/theory.md (5.16)"};
   Rule<int> many_short_steps{3, "interior.many_short_steps",
-                             "short steps in a row before the path restarts; Newton's steps that end at a kink at once "
-                             "before it follows [-]; off: 1e9",
-                             "doc/theory.md (5.16)"};
+                             "short steps in a row before the path restarts [-]; off: 1e9", "doc/theory.md (5.16)"};
   Rule<double> more_pressure{100, "interior.more_pressure",
                              "factor of the pressure where the path restarts [-]; off: 1", "doc/theory.md (5.16)"};
 };

@@ -12,7 +12,7 @@ struct HeadwayRules {
                      "measure over the least before that is progress: residual on one quadratic piece, of an accurate "
                      "solve for a confirmed active set, or of a pass of "
                      "the mixed form, energy that a half "
-                     "of a step misses, way of an obstacle to its rest, "
+                     "of a step misses, gain of energy by a CG iteration, way of an obstacle to its rest, "
                      "residual of step.iterations_back iterations ago where friction's bounds follow [-]",
                      "not measured"};
 };

@@ -13,8 +13,8 @@ namespace rpc::solver
 struct LinearRules {
   // Choice of a preconditioner.
   Rule<GO> few_rows{1000, "linear.few_rows",
-                    "unknowns up to which there is a factor from the start, multigrid is one, and a coarser mesh "
-                    "predicts nothing without friction [-]",
+                    "unknowns of a mesh that one factor solves for sooner than coarser meshes: it has the factor from "
+                    "the start, MueLu has no level below, and without friction no coarser mesh predicts [-]",
                     "coarser meshes save little there, and leave CG a rest"};
   Rule<GO> most_sparse_rows{3000000, "linear.most_sparse_rows",
                             "unknowns up to which a sparse factor is thought of [-]",
@@ -129,11 +129,12 @@ inline constexpr_rules CostModel cost_model;
 
 /// Newton's method, (4.2) - (4.6).
 struct NewtonRules {
-  Rule<double> forcing{5e-3, "newton.forcing", "|r|/|F| while the Hessian changes [-]",
+  Rule<double> forcing{5e-3, "newton.forcing",
+                       "|r|/|F| while the Hessian changes, and what a step leaves of |F| at least [-]",
                        "a rough direction leads down as well as an exact one"};
   Rule<double> largest_residual{0.1, "newton.largest_residual",
-                                "|r| of a direction, and of a pass of the mixed form, at most, over the right side; at "
-                                "the end over the target of |F| [-]",
+                                "loosest linear solve: |r| over the right side; of the last one over the target "
+                                "of |F| [-]",
                                 "not measured"};
   Rule<double> cut_short{0.02, "newton.cut_short", "length of a step that ended at a kink [-]", "(4.6)"};
   Rule<double> to_the_minimum{1e-6, "newton.to_the_minimum", "|1 - length| of a step that has met no kink [-]",
