@@ -28,6 +28,7 @@ HISTORIES = {  # (seed, number): (most Newton steps of a step, what was wrong)
     (71779, 123): (20, "space, a point that cannot stick: its multiplier lagged behind the direction of its slip (107 steps)"),
     (90419, 123): (15, "plane: choices after a multiplier update counted r v twice (18 steps)"),
     (90419, 627): (15, "plane, a point that cannot stick: it could not turn (28 steps in 3 parts)"),
+    (90428, 123): (11, "space: directions of slip took a linear solve for each turn (13 steps)"),
     (90426, 68): (15, "space, points on springs that stick by the lever of a slanted normal (5331 steps in 125 parts)"),
 }
 TIP = {  # pressed on the tip of a cone, between the nodes of a mesh of one cell, whose multipliers are rounding: no force to measure residuals by

@@ -127,6 +127,20 @@ void add_update(const DeviceView<LO *> &nodes, const DeviceView<double ***> &upd
     add_update(nodes, update, alpha, *x.getVector(v), *y.getVectorNonConst(v));
 }
 
+/// (nodes times dim) y_n += U_n x_n.
+void add_compact(const DeviceView<LO *> &nodes, const DeviceView<double ***> &update, const Vector &x, Vector &y)
+{
+  const int dim = static_cast<int>(update.extent(1));
+  const auto from = device_read(x);
+  const auto to = device_write(y);
+  Kokkos::parallel_for(
+      "rpc::algebra::add_compact", device_range(static_cast<LO>(nodes.extent(0))), KOKKOS_LAMBDA(const LO n) {
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l) to(dof(dim, n, k)) += update(n, k, l) * from(dof(dim, nodes(n), l));
+      });
+  Kokkos::fence();
+}
+
 DeviceView<double ***> sum_of(const DeviceView<double ***> &a, const DeviceView<double ***> &b)
 {
   const int dim = static_cast<int>(a.extent(1));
@@ -210,6 +224,12 @@ void UpdatedOperator::follow(const UpdatedOperator &other)
   coupling_ = other.coupling_;
   symmetric_ = other.symmetric_;
   revision_ = other.revision_;
+}
+
+void UpdatedOperator::add_update_at_nodes(const Vector &x, Vector &y) const
+{
+  add_compact(nodes_, update_, x, y);
+  if (coupling_.extent(0) > 0) add_compact(nodes_, coupling_, x, y);
 }
 
 DeviceView<double ***> UpdatedOperator::blocks() const

@@ -341,8 +341,11 @@ ActiveSetChoice largest_changes(const SmoothedFunctional &functional, const Acti
 namespace
 {
 
-/// Takes the update's friction states; points that begin to stick are moved back to where their slip is 0.
-void take_slip(const ActiveSetChoice &choice, const SmoothedPoints &points, const ActiveSet &active, Vector &u)
+/// Takes the update's friction states; points that begin to stick are moved back to where their slip is 0. In space those that begin to slip
+/// are moved on by what their own stiffness takes of the traction that friction does not bear, for what their branch resists across depends on
+/// their slip.                                                                                                       (12.16)
+void take_slip(const ActiveSetChoice &choice, const SmoothedPoints &points, const DeviceView<double *> &own,
+               const ActiveSet &active, Vector &u)
 {
   const SmoothedPoints s = points;
   const ActiveSet to = active;
@@ -352,13 +355,16 @@ void take_slip(const ActiveSetChoice &choice, const SmoothedPoints &points, cons
   const auto direction = choice.direction, traction = choice.traction;
   const auto cannot_stick = choice.cannot_stick;
   const auto lever = choice.lever;
+  const auto count = points_of_nodes(s.points, static_cast<LO>(u.getLocalLength()) / s.points.dim);
   const auto x = device_write(u);
   for_each_point_by_group(
       "rpc::contact::take_slip", s.points, KOKKOS_LAMBDA(const LO i) {
         const ContactNodes &c = s.points;
         const Friction f = c.friction(i);
         const SlipBranch branch{slips(i), row(direction, i)};
-        const bool sticks = branch.state == Slip::stick && to.slip(i) != Slip::stick;
+        const bool changes = branch.state != to.slip(i), sticks = branch.state == Slip::stick;
+        const bool may_go_on =
+            c.dim == 3 && to.chosen && to.state(i) != State::open && own(i) > 0 && is_free(c, i, count);
         const double pressure = state(i) == State::open ? 0 : multiplier_of(state(i), p(i), c.law(i));
         to.slip(i) = branch.state;
         to.cannot_stick(i) = cannot_stick(i);
@@ -366,19 +372,21 @@ void take_slip(const ActiveSetChoice &choice, const SmoothedPoints &points, cons
         set_row(to.direction, i, branch.direction);
         set_row(s.multiplier.tangential, i, multiplier_of(branch, row(traction, i), pressure, f));
         s.bound(i) = friction_bound(pressure, f);
-        if (!sticks) return;
-        const Along e = slip(c, i, x);
+        if (!changes || (!sticks && !may_go_on)) return;
+        const double beyond = math::larger(row(traction, i).length() - s.bound(i), 0);
+        const Along move = sticks ? slip(c, i, x).scaled(-1) : branch.direction.scaled(beyond / own(i));
         for (int k = 0; k < c.dim; ++k)
-          if (c.friction.free(i, k)) x(c.dof(i, k)) -= e(k);
+          if (c.friction.free(i, k)) x(c.dof(i, k)) += move(k);
       });
   Kokkos::fence();
 }
 
 } // namespace
 
-void take_choice(const ActiveSetChoice &choice, const SmoothedFunctional &functional, ActiveSet &active, Vector &u)
+void take_choice(const ActiveSetChoice &choice, const SmoothedFunctional &functional, const DeviceView<double *> &own,
+                 ActiveSet &active, Vector &u)
 {
-  if (choice.slip.extent(0) > 0) take_slip(choice, functional.points(), active, u);
+  if (choice.slip.extent(0) > 0) take_slip(choice, functional.points(), own, active, u);
   const SmoothedPoints &s = functional.points();
   const auto state = active.state, next = choice.state;
   const auto p = choice.pressure;
@@ -398,32 +406,6 @@ void take_choice(const ActiveSetChoice &choice, const SmoothedFunctional &functi
         for (int k = 0; k < c.dim; ++k) x(c.dof(i, k)) -= move * c.direction(i, k);
       });
   Kokkos::fence();
-}
-
-double pressure_error(const SmoothedFunctional &functional, const ActiveSet &active, const Vector &u,
-                      const DeviceView<double *> &own)
-{
-  const SmoothedPoints &s = functional.points();
-  const auto state = active.state;
-  const auto slips = active.slip;
-  const auto x = device_read(u);
-  double error = 0, largest = 0;
-  Kokkos::parallel_reduce(
-      "rpc::contact::pressure_error", device_range(s.size()),
-      KOKKOS_LAMBDA(const LO i, double &worst, double &scale) {
-        const ContactNodes &c = s.points;
-        if (c.fixed(i)) return;
-        const double lambda = s.multiplier.normal(i);
-        scale = math::larger(scale, lambda);
-        const double stretch = penalty_stretch(state(i), penetration(c, i, x), lambda, s.penalty(i), c.law(i));
-        worst = math::larger(worst, own(i) * math::magnitude(stretch));
-        if (s.has_friction() && slips(i) == Slip::stick) worst = math::larger(worst, own(i) * slip(c, i, x).length());
-      },
-      Kokkos::Max<double>(error), Kokkos::Max<double>(largest));
-  const double mine[2] = {error, largest};
-  double all[2];
-  Teuchos::reduceAll(*u.getMap()->getComm(), Teuchos::REDUCE_MAX, 2, mine, all);
-  return all[0] > 0 && all[1] > 0 ? all[0] / all[1] : 0;
 }
 
 } // namespace rpc::contact

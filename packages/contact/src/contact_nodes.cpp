@@ -427,4 +427,15 @@ DeviceView<double *> penetrations(const ContactNodes &points, const Vector &u)
   return v;
 }
 
+DeviceView<int *> points_of_nodes(const ContactNodes &points, const LO num_nodes)
+{
+  const ContactNodes c = points;
+  if (!c.friction.exists() || c.num_groups() < 2) return {};
+  const DeviceView<int *> count("rpc::contact::points_of_nodes", num_nodes);
+  for_each_point_by_group(
+      "rpc::contact::points_of_nodes", c, KOKKOS_LAMBDA(const LO i) { ++count(c.node(i)); });
+  Kokkos::fence();
+  return count;
+}
+
 } // namespace rpc::contact

@@ -164,7 +164,13 @@ ActiveSetChoice Iterate::choose_active_set(const Vector &u, const double negligi
 
 void Iterate::take_active_set(const ActiveSetChoice &choice, Vector &u)
 {
-  take_choice(choice, functional_, active_, u);
+  take_choice(choice, functional_, own_, active_, u);
+  update_stiffness(u);
+}
+
+void Iterate::turn_slip(const Vector &u)
+{
+  contact::turn_slip(functional_.points(), active_, u);
   update_stiffness(u);
 }
 

@@ -55,18 +55,6 @@ void add_differences(const SmoothedPoints &s, const ActiveSet &active, const Vec
   Kokkos::fence();
 }
 
-/// (owned nodes) How many points each node has; empty without friction, and where no node can have two.
-DeviceView<int *> points_of_nodes(const ContactNodes &points, const LO num_nodes)
-{
-  const ContactNodes c = points;
-  if (!c.friction.exists() || c.num_groups() < 2) return {};
-  const DeviceView<int *> count("rpc::contact::points_of_nodes", num_nodes);
-  for_each_point_by_group(
-      "rpc::contact::points_of_nodes", c, KOKKOS_LAMBDA(const LO i) { ++count(c.node(i)); });
-  Kokkos::fence();
-  return count;
-}
-
 /// The moves of a sweep, from the elastic gradient at u; those of two points of one node add up. With friction only moves along the
 /// normals are made, of nodes with one point: any other is slip too, whose energy the move does not weigh.
 void move_points(const SmoothedPoints &s, const DeviceView<double *> &stiffness, const Vector &G, Vector &u)

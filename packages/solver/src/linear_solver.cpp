@@ -26,12 +26,6 @@ namespace rpc::solver
 namespace
 {
 
-/// Iterations are counted to 1e-8.
-double fair(const double tolerance)
-{
-  return linear_rules.fair_iterations * std::min(1., std::log(tolerance) / std::log(1e-8));
-}
-
 /// How a linear solve went that was not good.
 enum class Outcome {
   failed, ///< it stopped before it converged
@@ -50,18 +44,6 @@ std::optional<Outcome> outcome_of(const LinearSolver::Result &result, const bool
 }
 
 } // namespace
-
-std::string solver_path(const LinearSolverCounts &counts)
-{
-  std::string text;
-  for (const std::string &taken : counts.path) text += (text.empty() ? "" : " -> ") + taken;
-  return text;
-}
-
-std::string chosen_solver(const LinearSolverCounts &counts)
-{
-  return counts.description + (counts.path.size() > 1 ? " (" + solver_path(counts) + ")" : "");
-}
 
 /// The candidates in order: the first one that applies is used. A sparse factor stands first, and waits until the iterations of the others
 /// would take longer than it. Where a solve fails, breaks down or is given up, goes_on() puts the next one in use for the same solve.
@@ -113,6 +95,7 @@ struct LinearSolver::Impl {
   bool is_sparse() const { return candidates.front().applies(); }
   void prepare();
   void count(Candidate &candidate);
+  void count_solve(int iterations, double seconds);
   Result attempt(const Vector &b, Vector &x, const Accuracy &wanted);
   const Factor::Prospect *prospect();
   bool sparse_pays(double iterations_in_all, double fair_ones);
@@ -246,6 +229,15 @@ void LinearSolver::Impl::record(const Candidate &candidate, const std::string &r
   if (std::find(counts.path.begin(), counts.path.end(), entry) == counts.path.end()) counts.path.push_back(entry);
 }
 
+void LinearSolver::Impl::count_solve(const int iterations, const double seconds)
+{
+  counts.iterations.push_back(iterations);
+  ++row(*used).solves;
+  row(*used).iterations += iterations;
+  counts.solve_seconds += seconds;
+  counts.description = used->B->description();
+}
+
 /// One solve with what is in use.
 LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, const Accuracy &wanted)
 {
@@ -278,11 +270,7 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
     lost_iterations += std::max(0., done.iterations - fair(least));
     used->B->learn(done.iterations, seconds_of_cg.counted);
     result = {done.converged, done.broken, false, done.iterations, done.energy, done.reason};
-    counts.iterations.push_back(result.iterations);
-    ++row(*used).solves;
-    row(*used).iterations += result.iterations;
-    counts.solve_seconds += Teuchos::Time::wallTime() - start;
-    counts.description = used->B->description();
+    count_solve(result.iterations, Teuchos::Time::wallTime() - start);
     if (!result.broken && !std::isfinite(x.norm2())) {
       result.converged = false;
       result.broken = true;
@@ -414,6 +402,30 @@ LinearSolver::Result LinearSolver::solve_held(const Vector &b, Vector &x, const 
     if (!outcome) return result;
     if (!impl_->goes_on(*outcome, result.reason)) return result;
   }
+}
+
+const Preconditioner *LinearSolver::preconditioner()
+{
+  const LinearSolverOptions &asked = impl_->options;
+  const bool by_deck = asked.method != LinearSolverOptions().method || asked.belos.numParams() > 0;
+  if (tied_ || by_deck || asked.rough_part < 1) return nullptr;
+  impl_->choose_before_the_first_solve();
+  if (impl_->first().kind == Impl::Kind::mixed) return nullptr;
+  try {
+    impl_->prepare();
+  } catch (const Error &) {
+    throw;
+  } catch (const std::exception &failure) { // the same on all ranks; the next solve() tells
+    pass_on_out_of_memory(failure);
+    return nullptr;
+  }
+  if (impl_->counts.path.empty()) impl_->record(*impl_->used, "");
+  return impl_->used->B.get();
+}
+
+void LinearSolver::count(const int iterations, const double seconds)
+{
+  impl_->count_solve(iterations, seconds);
 }
 
 double LinearSolver::inverse_energy_held(const Vector &F)

@@ -365,8 +365,8 @@ Status ActiveSetLoop::step_to_choice(MinimizationSteps &steps)
     const Status status = steps.stay();
     return status == Status::goes_on ? end_choices(steps, verdict) : status;
   }
-  // In space the equations of an active set with slip are not linear. What follows Tresca problems goes back to where it began.
-  const bool may_end = rough_ && rubs_ && !turns_ && then_ == Then::newton;
+  const bool may_end =
+      rough_ && rubs_ && then_ == Then::newton; // what follows Tresca problems goes back to where it began
   if (!rough_ || may_end) { // what is left is small against u: solving for it keeps its relative accuracy        (5.13)
     start_.update(-1., *u, 1.);
     iterate_.move_origin(*u);
@@ -380,11 +380,14 @@ Status ActiveSetLoop::step_to_choice(MinimizationSteps &steps)
 
   const auto direction = rcp(new Vector(F.getMap()));
   solver::Accuracy asked = wanted(); // (5.9)
-  if (may_end) {
+  const bool in_space = turns_ && then_ == Then::newton && solve_in_space(steps, asked, F, *direction);
+  if (may_end && !turns_) {
     asked.goes_on = [&](const Vector &d) { return confirms(solver::tpetra(steps.at().getX()), d); };
     asked.further = choice_rules.enough * target_ / norm_;
   }
-  const auto solved = solver::solve_for_direction(steps.context(), F, *direction, asked);
+  solver::LinearSolver::Result solved;
+  solved.converged = in_space;
+  if (!in_space) solved = solver::solve_for_direction(steps.context(), F, *direction, asked);
   if (!solved.converged) { // an active set that leaves the body unheld, or an interrupt
     if (!solved.interrupted) {
       iterate_.duals().reset();
@@ -393,7 +396,7 @@ Status ActiveSetLoop::step_to_choice(MinimizationSteps &steps)
     return leave_to_newton(steps);
   }
   if (make_coarse_) solve_seconds_ = steps.context().linear_solver.one_rank_seconds_of_last_solve();
-  direction->scale(-1.);
+  if (!in_space) direction->scale(-1.);
   ++steps.context().steps;
   ++steps_;
   const Status status = steps.take(direction);

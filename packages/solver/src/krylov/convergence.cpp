@@ -10,6 +10,11 @@
 
 namespace rpc::solver
 {
+
+double fair(const double tolerance)
+{
+  return linear_rules.fair_iterations * std::min(1., std::log(tolerance) / std::log(1e-8));
+}
 void Convergence::add(const double residual)
 {
   least_.push_back(std::min(least_.back(), residual));

@@ -6,6 +6,9 @@
 namespace rpc::solver
 {
 
+/// Iterations of a solve that are not lost; they are counted to 1e-8.
+double fair(double tolerance);
+
 /// The residuals of one Krylov iteration, from which it is predicted how many iterations it takes in all.
 class Convergence
 {

@@ -61,6 +61,8 @@ public:
   const DeviceView<double ***> &update() const { return update_; }
   const DeviceView<double ***> &base_blocks() const { return base_blocks_; }
   DeviceView<double ***> blocks() const;
+  /// y_n += (U_n + C_n) x_n at nodes(). @param x  (owned dofs)   @param y  (nodes times dim) a node's components side by side
+  void add_update_at_nodes(const Vector &x, Vector &y) const;
 
 private:
   RCP<const StiffnessOperator> K_;

@@ -73,6 +73,7 @@ private:
   Status end_choices(solver::MinimizationSteps &steps, Verdict verdict);
   Status leave_to_newton(solver::MinimizationSteps &steps);
   Status step_to_choice(solver::MinimizationSteps &steps);
+  bool solve_in_space(solver::MinimizationSteps &steps, const solver::Accuracy &rough, const Vector &F, Vector &d);
   Status step_on_path(solver::MinimizationSteps &steps);
   Status newton_step(solver::MinimizationSteps &steps);
   bool newton_hands_over(solver::MinimizationSteps &steps);
@@ -104,6 +105,7 @@ private:
   bool rough_;                                     // solves are, while the active set changes
   bool rubs_;                                      // there is friction
   bool turns_ = false;                             // and in space: the branches of an active set are not linear
+  bool space_fails_ = false;                       // a solve that follows them has not come nearer: linear ones follow
   bool confirmed_ = false;
   bool resumed_ = false;
   std::optional<FoundBy> predicted_;     // what to begin with where a coarser mesh predicts the start

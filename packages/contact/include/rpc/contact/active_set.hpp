@@ -43,10 +43,21 @@ ActiveSetChoice largest_changes(const SmoothedFunctional &functional, const Acti
 
 /// Takes the update's states for the active set, its pressures for multipliers as far as the states allow. Nodes that close are
 /// moved onto the foundation: r v would make a large residual of a small distance.                              (5.7)
-void take_choice(const ActiveSetChoice &choice, const SmoothedFunctional &functional, ActiveSet &active, Vector &u);
+/// @param own  (points) stiffness of each point alone [Pa/m]
+void take_choice(const ActiveSetChoice &choice, const SmoothedFunctional &functional, const DeviceView<double *> &own,
+                 ActiveSet &active, Vector &u);
+
+/// Directions of slip in space become those that the equations linearized last give at u.                       (12.13)
+void turn_slip(const SmoothedPoints &points, const ActiveSet &active, const Vector &u);
+
+/// Of a side with friction, points on the branches of an active set are moved to where their penalties bear nothing, and their multipliers take
+/// over what they bear; in space multipliers of points that slip turn to their tractions. Nodes of two sides, and those with a prescribed
+/// unknown, stay as they are.                                                                              (12.17)
+void rest_on_multipliers(const SmoothedPoints &points, const ActiveSet &active, Vector &u);
 
 /// About the largest error of the pressures at nodes that are not open, over the largest pressure: the share k/r that the
-/// penalty leaves of the last change, with k the node's own stiffness.                                           (5.10)
+/// penalty leaves of the last change, with k the node's own stiffness. In space also that of tractions of points that slip, whose direction
+/// follows the penalty.                                                                                            (5.10)
 double pressure_error(const SmoothedFunctional &functional, const ActiveSet &active, const Vector &u,
                       const DeviceView<double *> &own);
 

@@ -75,6 +75,18 @@ KOKKOS_INLINE_FUNCTION double penetration(const ContactNodes &c, const LO i, con
 /// (points) v_i at all nodes; fences [m]. @param u  (owned dofs)
 DeviceView<double *> penetrations(const ContactNodes &points, const Vector &u);
 
+/// (owned nodes) How many points each node has; empty without friction, and where no node can have two.
+DeviceView<int *> points_of_nodes(const ContactNodes &points, LO num_nodes);
+
+/// Whether a point with friction moves as it likes: its node has no other one, and none of its unknowns is prescribed; for kernels.
+/// @param count  points_of_nodes()
+KOKKOS_INLINE_FUNCTION bool is_free(const ContactNodes &c, const LO i, const DeviceView<int *> &count)
+{
+  bool free = !c.fixed(i) && (count.extent(0) == 0 || count(c.node(i)) < 2);
+  for (int k = 0; k < c.dim; ++k) free = free && c.friction.free(i, k) != 0;
+  return free;
+}
+
 /// (I - nu_i nu_i^T) x, the part of a vector along the side at one node, for kernels.
 KOKKOS_INLINE_FUNCTION Along along_side(const ContactNodes &c, const LO i, const Along &x)
 {

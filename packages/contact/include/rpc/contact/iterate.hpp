@@ -58,6 +58,9 @@ public:
   }
   /// Takes an updated active set, and updates hessian() for it.
   void take_active_set(const ActiveSetChoice &choice, Vector &u);
+  /// Directions of slip follow u, and hessian() does.                                                            (12.13)
+  void turn_slip(const Vector &u);
+  void rest_on_multipliers(Vector &u) { contact::rest_on_multipliers(functional_.points(), active_, u); }
   /// @param gradient  of the functional itself at u   (5.6)
   void active_set_gradient(const Vector &u, const Vector &gradient, Vector &F) const
   {

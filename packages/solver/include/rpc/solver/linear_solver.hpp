@@ -7,6 +7,7 @@
 #include "rpc/solver/linear_solver_options.hpp"
 #include "rpc/solver/mesh_levels.hpp"
 #include "rpc/solver/mixed_form.hpp"
+#include "rpc/solver/preconditioner.hpp"
 
 #include <memory>
 #include <string>
@@ -76,6 +77,12 @@ public:
   /// x <- approximately H^-1 b, from x = 0, for any b, which the mixed form takes to be 0 at prescribed unknowns; collective. Failure is a result, not an exception. x is 0 where b is.
   /// @param wanted  a number is |r| / |b|; never taken below the options' one
   Result solve(const Vector &b, Vector &x, const Accuracy &wanted);
+
+  /// The preconditioner in use, brought to H, for a Krylov method of the caller's own: see KrylovSpace. Null where solve() does more than
+  /// that: with tied unknowns, in the mixed form, with a method or a list of the deck's, after a set-up that failed. Collective.
+  const Preconditioner *preconditioner();
+  /// Counts such a solve.
+  void count(int iterations, double seconds);
 
   /// About F . H^-1 F: one multigrid cycle stands for H^-1. 0 where F is 0, NaN where the cycle breaks
   /// down; collective.
