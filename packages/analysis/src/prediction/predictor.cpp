@@ -6,6 +6,7 @@
 #include "rpc/analysis/rules.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/fem/interpolation.hpp"
+#include "rpc/solver/linear_solver.hpp"
 #include "rpc/solver/rules.hpp"
 
 #include <Teuchos_Time.hpp>
@@ -28,6 +29,7 @@ std::string no_prediction(const Problem &fine, const contact::ContactNodes &cont
   if (!takes_more && fine.discretization().owned_dofs->getGlobalNumElements() <=
                          static_cast<Tpetra::global_size_t>(solver::linear_rules.few_rows))
     return "the mesh is small";
+  if (solver::is_bound_by_launches(*fine.stiffness())) return "a GPU takes no less time for a coarser mesh";
   return "";
 }
 

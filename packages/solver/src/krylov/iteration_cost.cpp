@@ -3,6 +3,7 @@
 
 #include "factor/band_factor.hpp"
 #include "rpc/core/parallel.hpp"
+#include "rpc/solver/linear_solver.hpp"
 #include "rpc/solver/rules.hpp"
 
 #include <algorithm>
@@ -46,6 +47,11 @@ IterationSeconds seconds_of_iteration(const StiffnessOperator &K)
       (K.dofs_per_node() == 3 ? cost_model.repeated_entry : cost_model.entry_against_factor) * entries;
   const double measured = with_all_ranks(K, cost_model.repeated_entry * entries + cost_model.repeated_row * rows);
   return {with_all_ranks(K, counted), measured, ranks * measured};
+}
+
+bool is_bound_by_launches(const StiffnessOperator &K)
+{
+  return on_gpu && !(seconds_of_iteration(K).measured > cost_model.launches);
 }
 
 bool is_narrow(const double unknowns, const double width, const IterationSeconds &iteration)

@@ -24,6 +24,9 @@ struct CandidateCounts {
   std::string left; ///< why another one took its place, or why it cannot be had; empty: neither
 };
 
+/// Whether an iteration takes its least time on a GPU, that of its launches, so that one on a coarser mesh takes no less; never on hosts. Collective.
+bool is_bound_by_launches(const StiffnessOperator &K);
+
 class TiedSolver;
 
 /// What was done, for the summary.
