@@ -23,7 +23,8 @@ public:
   SolveInSpace(contact::Iterate &iterate, solver::LinearSolver &linear, const double pressure_tolerance,
                const Vector &F, Vector &d)
       : iterate_(iterate), linear_(linear), pressure_tolerance_(pressure_tolerance), space_(iterate.hessian()),
-        F_(F, Teuchos::Copy), d_(d), norm_(F.norm2()), B_(linear.preconditioner())
+        F_(F, Teuchos::Copy), d_(d), to_(F.getMap()), expected_(F.getMap()), of_functional_(F.getMap()),
+        norm_(F.norm2()), B_(linear.preconditioner())
   {
     d_.putScalar(0);
   }
@@ -35,12 +36,11 @@ public:
   /// Solves the linear equations at the start to |F| <= enough. @return whether that was reached
   bool solve_linear(const double enough)
   {
-    Vector move(F_.getMap());
     while (norm_ > enough) {
       if (!extend()) return false;
       const double before = norm_;
-      norm_ = space_.minimize(move, F_);
-      d_.update(1., move, 1.);
+      norm_ = space_.minimize(to_, F_);
+      d_.update(1., to_, 1.);
       if (!(norm_ < before)) return false;
     }
     return true;
@@ -60,21 +60,20 @@ public:
     while (norm_ > enough) {
       if (is_new && !extend()) return;
       const double before = norm_;
-      Vector to(F_.getMap()), expected(F_, Teuchos::Copy);
-      space_.minimize(to, expected);
-      to.update(1., d_, 1.);
-      if (const double now = residual(to, expected); now < norm_) take(to);
+      expected_.update(1., F_, 0.);
+      space_.minimize(to_, expected_);
+      to_.update(1., d_, 1.);
+      if (residual(to_, expected_) < norm_) take(to_);
       if (is_new && !(norm_ < falls * before)) return;
       is_new = true;
     }
   }
 
 private:
-  double residual(const Vector &at, Vector &F) const
+  double residual(const Vector &at, Vector &F)
   {
-    Vector of_functional(F.getMap());
-    iterate_.gradient(at, of_functional);
-    iterate_.active_set_gradient(at, of_functional, F); // (5.6)
+    iterate_.gradient(at, of_functional_);
+    iterate_.active_set_gradient(at, of_functional_, F); // (5.6)
     return F.norm2();
   }
 
@@ -87,7 +86,7 @@ private:
   /// Goes to a point, and linearizes there.
   void take(const Vector &at)
   {
-    d_ = at;
+    d_.update(1., at, 0.);
     if (iterate_.pressure_error(d_) > pressure_tolerance_) iterate_.rest_on_multipliers(d_);
     iterate_.turn_slip(d_);
     norm_ = residual(d_, F_);
@@ -98,6 +97,7 @@ private:
   double pressure_tolerance_;
   solver::KrylovSpace space_;
   Vector F_, &d_;
+  Vector to_, expected_, of_functional_; // kept: vectors cost more to make on a GPU than a product with them
   double norm_;
   const solver::Preconditioner *B_;
 };
