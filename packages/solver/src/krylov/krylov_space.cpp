@@ -52,7 +52,7 @@ std::vector<RCP<const Vector>> readable(const std::vector<RCP<Vector>> &vectors)
 
 /// The y with A y = b, A symmetric and positive definite, by its lower triangle. Where rounding has made a leading part of A indefinite y is
 /// 0 from there on.
-std::vector<double> solution(const std::vector<std::vector<double>> &A, const std::vector<double> &b)
+std::vector<double> solution_of(const std::vector<std::vector<double>> &A, const std::vector<double> &b)
 {
   const int n = static_cast<int>(b.size());
   std::vector<double> scale(n), factor(static_cast<std::size_t>(n) * n), y(n);
@@ -123,7 +123,7 @@ double KrylovSpace::minimize(Vector &d, Vector &F)
     slope[j] = -slope[j] - slope_at[j];
     for (std::size_t i = 0; i <= j; ++i) products[j][i] += at_products_[j][i];
   }
-  const auto y = solution(products, slope);
+  const auto y = solution_of(products, slope);
   add_combination(y, z, 0, d);
   add_combination(y, elsewhere, 1, F);
   add_combination(y, at, 1, rows);
