@@ -5,7 +5,6 @@
 #include "gmsh_box.hpp"
 #include "gmsh_shapes.hpp"
 #include "gmsh_size_callback.hpp"
-#include "gmsh_time_limit.hpp"
 #include "mesh_formats.hpp"
 #include "size_tree.hpp"
 
@@ -78,35 +77,17 @@ bool mesh_curves(const double body, const double factor)
 
 constexpr std::size_t most_nodes = 2'000'000; // of order 1: larger meshes are for gmsh alone
 
-/// Counts the sizes that gmsh asks for, one or two for a node, and ends this process when gmsh asks no more and does not come to an end.
-class CountOfSizes
-{
-public:
-  std::size_t operator++()
-  {
-    // After its last node a ball of order 2 takes 3 times as long as until then.
-    constexpr double for_the_rest = 10;
-    constexpr std::size_t every = 256; // of them sets the limit anew, which takes 1 us
-    if (++sizes_ % every == 0) limit_.renew(for_the_rest);
-    return sizes_;
-  }
-
-private:
-  static constexpr double least = 10; // [s]
-  std::size_t sizes_ = 0;
-  TimeLimit limit_{least};
-};
-
 /// Meshes surfaces and volumes; a bound on the nodes inside them gives sizes that are absurd an end.
-void mesh_surfaces_and_volumes(const int dim, CountOfSizes &nodes)
+void mesh_surfaces_and_volumes()
 {
-  set_size_callback([&](int, int, double, double, double, const double own_size) { // once for each node
+  std::size_t nodes = 0; // gmsh asks for the size at each, once
+  set_size_callback([&](int, int, double, double, double, const double own_size) {
     if (++nodes > most_nodes)
       throw "cell sizes are too small: surfaces and volumes would have more than " + std::to_string(most_nodes) +
           " nodes";
     return own_size;
   });
-  gmsh::model::mesh::generate(dim);
+  gmsh::model::mesh::generate(3);
   gmsh::model::mesh::removeSizeCallback();
 }
 
@@ -116,10 +97,12 @@ bool mesh_by_own_sizes(const double body, const double factor, const int dim, co
 {
   gmsh::option::setNumber("Mesh.MeshSizeFactor", factor);
   constexpr double most_cells_along = 1e4; // of a body whose curves are meshed once
-  CountOfSizes nodes;
   if (again ? !mesh_curves(body, factor) : body > most_cells_along * factor * number_option("Mesh.MeshSizeMax"))
     return false;
-  mesh_surfaces_and_volumes(dim, nodes);
+  if (dim == 3)
+    mesh_surfaces_and_volumes();
+  else
+    gmsh::model::mesh::generate(2);
   return true;
 }
 
@@ -249,7 +232,7 @@ std::string mesh_by_field(const GmshRequest &request, const int dim)
   const bool quadrilaterals = number_option("Mesh.SubdivisionAlgorithm") != 0;
   const double factor = request.size_factor * (quadrilaterals ? for_quadrilaterals : 1);
   const auto size_at = sizes_at(request.sizes);
-  CountOfSizes calls;
+  std::size_t calls = 0;
   std::set<int> curves;
   set_size_callback([&](const int dimension, const int entity, const double x, const double y, const double z,
                         const double own_size) { // of curvature, if of anything

@@ -176,10 +176,8 @@ GmshContents run_gmsh(const std::string &where, const GmshRequest &request)
   constexpr int no_library = 127; // of the system's loader
   RPC_REQUIRE(!status || !WIFEXITED(*status) || WEXITSTATUS(*status) != no_library,
               where << "gmsh cannot be loaded" << remedy);
-  RPC_REQUIRE_CODE(
-      !status || !WIFSIGNALED(*status) || WTERMSIG(*status) != SIGXCPU, ExitCode::bad_mesh,
-      where << "gmsh does not come to an end with it, as on damaged files and surfaces that cut themselves. "
-               "Write it anew, best as STEP, or give a mesh of it");
+  RPC_REQUIRE_CODE(!status || !WIFSIGNALED(*status) || WTERMSIG(*status) != SIGXCPU, ExitCode::bad_mesh,
+                   where << "gmsh does not come to an end with it: the file is damaged. Write it anew, best as STEP");
   std::string end = "ended without a mesh";
   if (status && WIFSIGNALED(*status)) end = std::string("broke down (") + strsignal(WTERMSIG(*status)) + ")";
   const MeshFormat format = format_of(request.file);

@@ -2,7 +2,6 @@
 #include "gmsh_shapes.hpp"
 
 #include "gmsh_mesher.hpp"
-#include "gmsh_time_limit.hpp"
 #include "mesh_formats.hpp"
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include <map>
 #include <optional>
 #include <sstream>
+#include <sys/resource.h>
 #include <utility>
 #include <vector>
 
@@ -21,15 +21,37 @@ namespace rpc::mesh
 namespace
 {
 
-/// The processor time that OpenCASCADE may take to read a file [s]. Where a number is none, its reader of BREP asks again and again.
-double time_to_read(const std::string &file)
+/// OpenCASCADE reads some damaged files for ever: where a number is none, its reader of BREP asks again. SIGXCPU then ends this process, which is
+/// there for one file.
+class TimeToRead
 {
-  // A hundred times what sound files take: 0.05 s at least, and 0.5 s for 1 MB of STEP, on one core of 2.5 GHz.
-  constexpr double least = 5, for_megabyte = 50; // [s]
-  std::error_code failed;
-  const auto bytes = std::filesystem::file_size(file, failed);
-  return least + (failed ? 0 : for_megabyte * 1e-6 * static_cast<double>(bytes));
-}
+public:
+  /// @param file  "" has no limit
+  explicit TimeToRead(const std::string &file)
+  {
+    std::error_code failed;
+    const auto bytes = file.empty() ? 0 : std::filesystem::file_size(file, failed);
+    if (file.empty() || failed || ::getrlimit(RLIMIT_CPU, &before_) != 0) return;
+    // A hundred times what sound files take: 0.05 s at least, and 0.5 s for 1 MB of STEP, on one core of 2.5 GHz.
+    constexpr double least = 5, for_megabyte = 50; // [s]
+    rusage used{};
+    ::getrusage(RUSAGE_SELF, &used);
+    rlimit limit = before_;
+    limit.rlim_cur = static_cast<rlim_t>(static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1 + least +
+                                         for_megabyte * 1e-6 * static_cast<double>(bytes));
+    is_set_ = limit.rlim_cur < before_.rlim_cur && ::setrlimit(RLIMIT_CPU, &limit) == 0;
+  }
+  ~TimeToRead()
+  {
+    if (is_set_) ::setrlimit(RLIMIT_CPU, &before_);
+  }
+  TimeToRead(const TimeToRead &) = delete;
+  TimeToRead &operator=(const TimeToRead &) = delete;
+
+private:
+  rlimit before_{};
+  bool is_set_ = false;
+};
 
 constexpr const char *kind_of_entity[] = {"point", "curve", "surface", "volume"};
 
@@ -174,8 +196,7 @@ std::string open_file(const GmshRequest &request, std::vector<std::string> &note
 {
   const bool shapes = format_of(request.file) == MeshFormat::shapes;
   {
-    std::optional<TimeLimit> limit;
-    if (shapes) limit.emplace(time_to_read(request.file));
+    const TimeToRead limit(shapes ? request.file : "");
     gmsh::open(request.file);
   }
   if (!shapes || !first_error().empty()) return "";
