@@ -125,8 +125,8 @@ bool ActiveSetLoop::solve_in_space(solver::MinimizationSteps &steps, const solve
     }
   }
   if (solved && ends) {
-    const double of_run = pressure_tolerance_ / 10 *
-                          scale_; // a tolerance of the run's below the residual's: no other solve follows  (5.10)
+    // (5.10) asks for residuals a tenth of the tolerance of pressures. A larger one would have to be solved for once more.
+    const double of_run = pressure_tolerance_ / 10 * scale_;
     solve.solve(choice_rules.enough * std::min(target_, of_run), headway_rules.falls);
     solved = rough_ || solve.norm() < norm_;
   }
