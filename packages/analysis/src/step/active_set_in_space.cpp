@@ -125,7 +125,7 @@ bool ActiveSetLoop::solve_in_space(solver::MinimizationSteps &steps, const solve
     }
   }
   if (solved && ends) {
-    // (5.10) asks for residuals a tenth of the tolerance of pressures. A larger one would have to be solved for once more.
+    // Where `Uzawa->Tolerance` is small, pressure_tolerance_ is ten times that, (5.10). A residual above it would be solved for once more.
     const double of_run = pressure_tolerance_ / 10 * scale_;
     solve.solve(choice_rules.enough * std::min(target_, of_run), headway_rules.falls);
     solved = rough_ || solve.norm() < norm_;
