@@ -76,7 +76,11 @@ TEST(KrylovSpace, FollowsAChangeOfTheOperatorWithTheVectorsThatItHas)
   }
   scene.on.hold(0, n, 4, -0.3);
   F.assign(scene.b);
+  Vector alone(F.getMap());
+  space.find_least(F, alone);
   const double least = space.minimize(d, F);
+  alone.update(-1., d, 1.);
+  EXPECT_EQ(alone.normInf(), 0);
   Vector exact(scene.b, Teuchos::Copy);
   scene.add(d, exact);
   exact.update(-1., F, 1.);

@@ -23,8 +23,8 @@ public:
   SolveInSpace(contact::Iterate &iterate, solver::LinearSolver &linear, const double pressure_tolerance,
                const Vector &F, Vector &d)
       : iterate_(iterate), linear_(linear), pressure_tolerance_(pressure_tolerance), space_(iterate.hessian()),
-        F_(F, Teuchos::Copy), d_(d), to_(F.getMap()), expected_(F.getMap()), of_functional_(F.getMap()),
-        norm_(F.norm2()), B_(linear.preconditioner())
+        F_(F, Teuchos::Copy), d_(d), to_(F.getMap()), F_to_(F.getMap()), of_functional_(F.getMap()), norm_(F.norm2()),
+        B_(linear.preconditioner())
   {
     d_.putScalar(0);
   }
@@ -60,10 +60,9 @@ public:
     while (norm_ > enough) {
       if (is_new && !extend()) return;
       const double before = norm_;
-      expected_.update(1., F_, 0.);
-      space_.minimize(to_, expected_);
+      space_.find_least(F_, to_);
       to_.update(1., d_, 1.);
-      if (residual(to_, expected_) < norm_) take(to_);
+      if (residual(to_, F_to_) < norm_) take(to_);
       if (is_new && !(norm_ < falls * before)) return;
       is_new = true;
     }
@@ -97,7 +96,7 @@ private:
   double pressure_tolerance_;
   solver::KrylovSpace space_;
   Vector F_, &d_;
-  Vector to_, expected_, of_functional_; // kept: vectors cost more to make on a GPU than a product with them
+  Vector to_, F_to_, of_functional_; // kept: vectors cost more to make on a GPU than a product with them
   double norm_;
   const solver::Preconditioner *B_;
 };

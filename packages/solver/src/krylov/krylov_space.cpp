@@ -111,22 +111,32 @@ void KrylovSpace::follow()
   }
 }
 
-double KrylovSpace::minimize(Vector &d, Vector &F)
+/// @param rows  of F, those of H's nodes   @return what each vector of the space is taken times
+std::vector<double> KrylovSpace::least(const Vector &F, const Vector &rows)
 {
   follow();
-  Vector rows = rows_at(*H_, at_nodes_, F);
-  const auto z = readable(z_), elsewhere = readable(elsewhere_), at = readable(H_rows_);
-  auto slope = dots(elsewhere, F);
-  const auto slope_at = dots(at, rows);
+  auto slope = dots(readable(elsewhere_), F);
+  const auto slope_at = dots(readable(H_rows_), rows);
   auto products = products_;
   for (std::size_t j = 0; j < slope.size(); ++j) {
     slope[j] = -slope[j] - slope_at[j];
     for (std::size_t i = 0; i <= j; ++i) products[j][i] += at_products_[j][i];
   }
-  const auto y = solution_of(products, slope);
-  add_combination(y, z, 0, d);
-  add_combination(y, elsewhere, 1, F);
-  add_combination(y, at, 1, rows);
+  return solution_of(products, slope);
+}
+
+void KrylovSpace::find_least(const Vector &F, Vector &d)
+{
+  add_combination(least(F, rows_at(*H_, at_nodes_, F)), readable(z_), 0, d);
+}
+
+double KrylovSpace::minimize(Vector &d, Vector &F)
+{
+  Vector rows = rows_at(*H_, at_nodes_, F);
+  const auto y = least(F, rows);
+  add_combination(y, readable(z_), 0, d);
+  add_combination(y, readable(elsewhere_), 1, F);
+  add_combination(y, readable(H_rows_), 1, rows);
   set_rows(*H_, rows, F);
   return F.norm2();
 }

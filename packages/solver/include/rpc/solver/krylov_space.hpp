@@ -20,10 +20,13 @@ public:
   bool extend(const Operator &B, const Vector &F);
   /// d <- the vector of the space for which |F + H d| is least, with the present H; F <- F + H d. @return |F|
   double minimize(Vector &d, Vector &F);
+  /// The same d, for a caller who finds F at d himself.
+  void find_least(const Vector &F, Vector &d);
   int size() const { return static_cast<int>(z_.size()); }
 
 private:
   void follow();
+  std::vector<double> least(const Vector &F, const Vector &rows);
 
   RCP<const UpdatedOperator> H_;
   RCP<const Map> at_nodes_;                      // the rows of H's nodes, of each rank
