@@ -2,6 +2,7 @@
 #include "rpc/algebra/several_vectors.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/core/sums.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -21,16 +22,13 @@ using Columns = Kokkos::Array<const double *, Count>;
 
 /// x_j . y for Count vectors.
 template <int Count>
-struct SumProducts {
-  using value_type = double[];
-  using size_type = LO;
-  const size_type value_count = Count;
+struct SumProducts : NumberSums {
   Columns<Count> x;
   const double *y;
   LO num_rows;
 
   SumProducts(const Columns<Count> &columns, const double *const with, const LO rows)
-      : x(columns), y(with), num_rows(rows)
+      : NumberSums(Count), x(columns), y(with), num_rows(rows)
   {
   }
   KOKKOS_INLINE_FUNCTION void operator()(const LO part, double sum[]) const
@@ -43,14 +41,6 @@ struct SumProducts {
       for (int j = 0; j < Count; ++j) mine[j] += x[j][row] * value;
     }
     for (int j = 0; j < Count; ++j) sum[j] += mine[j];
-  }
-  KOKKOS_INLINE_FUNCTION void init(double sum[]) const
-  {
-    for (int j = 0; j < Count; ++j) sum[j] = 0;
-  }
-  KOKKOS_INLINE_FUNCTION void join(double sum[], const double part[]) const
-  {
-    for (int j = 0; j < Count; ++j) sum[j] += part[j];
   }
 };
 

@@ -3,6 +3,7 @@
 
 #include "rpc/contact/law/judgement.hpp"
 #include "rpc/contact/rounding.hpp"
+#include "rpc/core/sums.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -259,19 +260,18 @@ Furthest HeldPart::furthest(const std::vector<double> &q) const
 RigidMotion HeldPart::carried(const RigidMotion &motion, const LO begin, const LO end) const
 {
   if (reactions_.friction.anywhere) return carried_with_friction(motion, begin, end);
-  const DeviceView<double[6]> sum("rpc::contact::carried");
   const Coefficients r = coefficients_of(motion);
   const auto along = reactions_.along;
   const auto limit = reactions_.limit;
   const auto part = reactions_.part;
   const int mine = part_;
   const double rounding = Rounding::speed * std::sqrt(dot(motion, motion));
-  Kokkos::parallel_for(
-      "rpc::contact::carried", Kokkos::RangePolicy<ExecutionSpace, LO>(begin, end), KOKKOS_LAMBDA(const LO i) {
+  const auto local = sums_over(
+      "rpc::contact::carried", Kokkos::RangePolicy<ExecutionSpace, LO>(begin, end), 6,
+      KOKKOS_LAMBDA(const LO i, double sum[]) {
         if (part(i) != mine || is_rigid(limit(i)) || !(speed(along, i, r) > rounding)) return;
-        for (int k = 0; k < 6; ++k) add_shared(sum(k), limit(i) * along(i, k));
+        for (int k = 0; k < 6; ++k) sum[k] += limit(i) * along(i, k);
       });
-  const auto local = to_host(sum);
   RigidMotion all;
   Teuchos::reduceAll(comm_, Teuchos::REDUCE_SUM, 6, local.data(), all.data());
   return all;
@@ -279,32 +279,27 @@ RigidMotion HeldPart::carried(const RigidMotion &motion, const LO begin, const L
 
 RigidMotion HeldPart::carried_with_friction(const RigidMotion &motion, const LO begin, const LO end) const
 {
-  const DeviceView<double[6]> sum("rpc::contact::carried");
   const Coefficients r = coefficients_of(motion);
   const Reactions reactions = reactions_;
   const int mine = part_;
   const double rounding = Rounding::speed * std::sqrt(dot(motion, motion));
-  Kokkos::parallel_for(
-      "rpc::contact::carried_with_friction", Kokkos::RangePolicy<ExecutionSpace, LO>(begin, end),
-      KOKKOS_LAMBDA(const LO i) {
+  const auto local = sums_over(
+      "rpc::contact::carried_with_friction", Kokkos::RangePolicy<ExecutionSpace, LO>(begin, end), 6,
+      KOKKOS_LAMBDA(const LO i, double sum[]) {
         if (reactions.part(i) != mine) return;
         const double towards = speed(reactions.along, i, r);
         Slide slide = slide_of(reactions.slide, i, r);
         if (!(slide.length > rounding)) slide.length = 0;
         const Answer answer = most_against(math::magnitude(towards) > rounding ? towards : 0, slide.length,
                                            reactions.limit(i), reactions.weight(i), reactions.friction(i));
-        double row[6] = {};
         if (answer
                 .endless) { // by rounding, or steepest() had found its ray: what is left is the bound without pressure
           const Friction f = reactions.friction(i);
-          add_answer(reactions, i, 0, reactions.weight(i) * math::fmin(f.bound, f.limit), slide, row);
+          add_answer(reactions, i, 0, reactions.weight(i) * math::fmin(f.bound, f.limit), slide, sum);
         } else {
-          add_answer(reactions, i, answer.pressure, answer.friction, slide, row);
+          add_answer(reactions, i, answer.pressure, answer.friction, slide, sum);
         }
-        for (int k = 0; k < 6; ++k)
-          if (row[k] != 0) add_shared(sum(k), row[k]);
       });
-  const auto local = to_host(sum);
   RigidMotion all;
   Teuchos::reduceAll(comm_, Teuchos::REDUCE_SUM, 6, local.data(), all.data());
   return all;

@@ -3,6 +3,7 @@
 
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/parallel.hpp"
+#include "rpc/core/sums.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -135,17 +136,14 @@ LineFunction::Value LineModel::at(const double t) const
 }
 
 /// What the contact points add to the gradient on a subspace, then to the rows of the curvature, one after the other.
-struct SubspaceSums {
-  using value_type = double[];
-  using size_type = LO;
-  const size_type value_count; // n + n n, for n directions
+struct SubspaceSums : NumberSums { // n + n n, for n directions
   SmoothedPoints points;
   Places from;
   DeviceView<double **> moves; // (points, n dim)
   DeviceView<double *> coefficient;
 
   SubspaceSums(const SmoothedPoints &s, const Places &at, const DeviceView<double **> &d, const DeviceView<double *> &a)
-      : value_count(static_cast<size_type>(a.extent(0) * (a.extent(0) + 1))), points(s), from(at), moves(d),
+      : NumberSums(static_cast<size_type>(a.extent(0) * (a.extent(0) + 1))), points(s), from(at), moves(d),
         coefficient(a)
   {
   }
@@ -171,14 +169,6 @@ struct SubspaceSums {
         for (int j = 0; j < c.dim; ++j)
           sum[n + n * k + l] += moves(i, c.dim * k + j) * inner_product(c, there.block[j], moves, i, l);
     }
-  }
-  KOKKOS_INLINE_FUNCTION void init(double sum[]) const
-  {
-    for (size_type k = 0; k < value_count; ++k) sum[k] = 0;
-  }
-  KOKKOS_INLINE_FUNCTION void join(double sum[], const double part[]) const
-  {
-    for (size_type k = 0; k < value_count; ++k) sum[k] += part[k];
   }
 };
 

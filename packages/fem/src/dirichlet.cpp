@@ -10,6 +10,7 @@
 #include "rpc/core/evaluate.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/core/sparse_rows.hpp"
+#include "rpc/core/sums.hpp"
 #include "rpc/fem/surface.hpp"
 #include "tied.hpp"
 
@@ -406,18 +407,16 @@ std::vector<std::array<double, 3>> reaction_forces(const Discretization &d, cons
                                                    const int num_conditions, const Vector &out_of_balance)
 {
   const int dim = d.dim();
-  DeviceView<double **> sums("rpc::fem::reaction", num_conditions, 3);
   const auto condition = dirichlet.condition;
   const auto force = device_read(out_of_balance);
-  Kokkos::parallel_for(
-      "rpc::fem::reactions", device_range(static_cast<LO>(condition.extent(0))), KOKKOS_LAMBDA(const LO dof) {
-        if (condition(dof) >= 0) add_shared(sums(condition(dof), component_of(dim, dof)), force(dof));
-      });
-  const auto mine = to_host(sums);
   std::vector<std::array<double, 3>> reactions(num_conditions);
   for (int k = 0; k < num_conditions; ++k) {
-    const double local[3] = {mine(k, 0), mine(k, 1), mine(k, 2)};
-    Teuchos::reduceAll(d.mesh->comm(), Teuchos::REDUCE_SUM, 3, local, reactions[k].data());
+    const auto local = sums_over(
+        "rpc::fem::reactions", device_range(static_cast<LO>(condition.extent(0))), 3,
+        KOKKOS_LAMBDA(const LO dof, double sum[]) {
+          if (condition(dof) == k) sum[component_of(dim, dof)] += force(dof);
+        });
+    Teuchos::reduceAll(d.mesh->comm(), Teuchos::REDUCE_SUM, 3, local.data(), reactions[k].data());
     if (d.axisymmetric()) reactions[k][0] = 0; // around the axis radial forces cancel
   }
   return reactions;

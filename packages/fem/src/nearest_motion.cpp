@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Displacements less the rigid motion that is nearest to them.
 #include "rpc/core/parallel.hpp"
+#include "rpc/core/sums.hpp"
 #include "rpc/fem/rigid_motion.hpp"
 #include "rpc/mesh/mesh.hpp"
 
@@ -45,27 +46,22 @@ NearestMotion nearest_motion(const Discretization &d, const DeviceView<char *> &
   result.centre = centre;
   result.radius = radius;
   // Products of the six modes with each other and with u.
-  const DeviceView<double[6][7]> sums("rpc::fem::products_of_modes");
-  {
-    const auto x = device_read(u);
-    Kokkos::parallel_for(
-        "rpc::fem::products_of_modes", device_range(d.mesh->num_owned_nodes()), KOKKOS_LAMBDA(const LO n) {
-          for (int c = 0; c < dim; ++c) {
-            const LO i = dof(dim, n, c);
-            if (counts.extent(0) > 0 && !counts(i)) continue;
-            double along[6];
-            modes_at(dim, coords, n, centre, radius, c, along);
-            for (int k = 0; k < 6; ++k) {
-              for (int l = 0; l < 6; ++l) add_shared(sums(k, l), along[k] * along[l]);
-              add_shared(sums(k, 6), along[k] * x(i));
-            }
+  const auto x = device_read(u);
+  const auto mine = sums_over(
+      "rpc::fem::products_of_modes", device_range(d.mesh->num_owned_nodes()), 6 * 7,
+      KOKKOS_LAMBDA(const LO n, double sum[]) {
+        for (int c = 0; c < dim; ++c) {
+          const LO i = dof(dim, n, c);
+          if (counts.extent(0) > 0 && !counts(i)) continue;
+          double along[6];
+          modes_at(dim, coords, n, centre, radius, c, along);
+          for (int k = 0; k < 6; ++k) {
+            for (int l = 0; l < 6; ++l) sum[7 * k + l] += along[k] * along[l];
+            sum[7 * k + 6] += along[k] * x(i);
           }
-        });
-  }
-  const auto host = to_host(sums);
-  std::vector<double> all(6 * 7);
-  for (int k = 0; k < 6 * 7; ++k) all[k] = host(k / 7, k % 7);
-  all = summed(d.mesh->comm(), all);
+        }
+      });
+  const std::vector<double> all = summed(d.mesh->comm(), mine);
   const auto product = [&all](const RigidMotion &a, const RigidMotion &b) {
     double sum = 0;
     for (int k = 0; k < 6; ++k)
