@@ -135,30 +135,23 @@ Status ActiveSetLoop::newton_step(MinimizationSteps &steps)
   return verdict == Verdict::go_on ? Status::goes_on : leave_to_newton(steps);
 }
 
-/// Where Newton has settled, the states are to be confirmed there; where it is slow or blocked, the interior-point method is next, once, and
-/// once choices with more changes than before, and good solves.                                                    (5.9a)
+/// Where Newton has settled, the states are to be confirmed there; where it is slow, the interior-point method is next, once.    (5.9a)
 bool ActiveSetLoop::newton_hands_over(MinimizationSteps &steps)
 {
   const Vector &u = solver::tpetra(steps.at().getX());
   const solver::NewtonContext &context = steps.context();
   ++newton_.steps;
   newton_.left *= std::max<double>(solver::newton_rules.forcing, std::abs(1 - context.step_length));
-  newton_.short_steps += context.step_length < solver::newton_rules.cut_short;
   const bool has_settled = std::abs(context.step_length - 1) <= solver::newton_rules.to_the_minimum &&
                            context.functional.piece(u) == context.piece;
   if (has_settled && !rubs_ && confirmations_ < solver::newton_rules.most_inner_steps) {
     ++confirmations_;
-    take_over(u, path_rules.trial_changes);
+    take_over(u);
     return true;
   }
-  const bool is_blocked = newton_.short_steps >= choice_rules.most_cut_short;
   const bool is_slow = newton_.steps > 1 && newton_.left > std::pow(1 - solver::newton_rules.full_step, newton_.steps);
-  if (path_ == Path::ahead && (is_blocked || is_slow)) {
-    take_path(u);
-    return true;
-  }
-  if (!is_blocked || std::exchange(resumed_, true)) return false;
-  take_over(u, solver::newton_rules.most_inner_steps);
+  if (path_ != Path::ahead || !is_slow) return false;
+  take_path(u);
   return true;
 }
 
@@ -169,23 +162,23 @@ void ActiveSetLoop::take_path(const Vector &u)
   method_ = Method::interior_path;
 }
 
-/// Choices go on from a point of Newton's.
-void ActiveSetLoop::take_over(const Vector &u, const int most)
+/// Choices go on from a point where Newton has settled.
+void ActiveSetLoop::take_over(const Vector &u)
 {
   iterate_.update_hessian(u); // the states there
   start_.assign(u);
   start_dual_ = iterate_.duals().values();
-  start_over({}, most);
+  start_over({});
   updates_ = 0;
 }
 
 /// Choices start anew.
-void ActiveSetLoop::start_over(std::optional<contact::ActiveSetChoice> choice, const int most)
+void ActiveSetLoop::start_over(std::optional<contact::ActiveSetChoice> choice)
 {
   method_ = Method::choices;
   choice_ = std::move(choice);
   choices_ = 1; // the first one of all has no solve before it
-  headway_ = within(most);
+  headway_ = within(path_rules.trial_changes);
   fewest_changes_ = 0;
   left_ = std::numeric_limits<double>::infinity();
   levers_ = {};

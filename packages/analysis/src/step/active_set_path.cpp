@@ -20,7 +20,7 @@ bool ActiveSetLoop::leaves_path()
   if (!ends && !(path.settled() && path.gap() <= trial_gap_)) return false;
   if (ends) path_ = Path::behind;
   trial_gap_ = path_rules.trial * path.gap();
-  start_over(path.choice(), path_rules.trial_changes); // (5.20)
+  start_over(path.choice()); // (5.20)
   return true;
 }
 

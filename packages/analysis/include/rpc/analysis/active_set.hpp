@@ -56,15 +56,15 @@ public:
 private:
   /// The method of the next step, and when it is taken:
   ///
-  ///     choices            at the start; where the path's states or Newton's have settled; once where Newton is blocked at kinks
-  ///     interior_path      once, without friction: where choices by a coarser mesh fail, or Newton is slow or blocked (5.9a)
+  ///     choices            at the start; where the path's states or Newton's have settled
+  ///     interior_path      once, without friction: where choices by a coarser mesh fail, or Newton is slow (5.9a)
   ///     newton_from_start  where choices by pressures make no progress (5.8a), before the path
   ///     newton             where they make none with friction or after the path; where the path or a linear solve fails
   enum class Method { choices, interior_path, newton_from_start, newton };
   enum class Verdict { go_on, converged, over };
   /// How Newton's steps have gone, one after the other.
   struct NewtonProgress {
-    int steps = 0, short_steps = 0; ///< the latter were blocked at a kink at once
+    int steps = 0;
     double left = 1; ///< product of |1 - t|, of each not too little: part of the way that is left, were there no kinks
   };
 
@@ -90,8 +90,8 @@ private:
   solver::Accuracy wanted() const;
   Verdict give_up(const Vector &u);
   void take_path(const Vector &u);
-  void take_over(const Vector &u, int most);
-  void start_over(std::optional<contact::ActiveSetChoice> choice, int most);
+  void take_over(const Vector &u);
+  void start_over(std::optional<contact::ActiveSetChoice> choice);
   bool leaves_path();
   bool solve_interior(solver::NewtonContext &context, const Vector &u, Vector &direction);
 
@@ -107,7 +107,6 @@ private:
   bool turns_ = false;                             // and in space: the branches of an active set are not linear
   bool space_fails_ = false;                       // a solve that follows them has not come nearer: linear ones follow
   bool confirmed_ = false;
-  bool resumed_ = false;
   std::optional<FoundBy> predicted_;     // what to begin with where a coarser mesh predicts the start
   MakeCoarseChoice make_coarse_;         // empty: there are none, or they have begun
   std::unique_ptr<CoarseChoice> coarse_; // null: pressures choose

@@ -43,7 +43,6 @@ struct ChoiceRules {
   Rule<double> part_of_scale{0.25, "choice.part_of_scale", "scale of the coarser mesh's compliance over the least observed one [-]",
                              "theory.md (5.8d)"};
   // When Newton's method hands over
-  Rule<int> most_cut_short{3, "choice.most_cut_short", "its steps that end at a kink at once [-]", "measurements.md: Ablation of all rules"};
   Rule<double> ended_by_rounding{1e-3, "choice.ended_by_rounding",
                                  "residual over that before the step for the last active set: the step is enough [-]", "not measured"};
   Rule<double> same_gradient{0.1, "choice.same_gradient",
@@ -64,7 +63,7 @@ struct PathRules {
   Rule<double> trial{1e-2, "path.trial",
                      "complementarity gap, relative, below which settled states are tried; then over the gap of the last trial [-]", "not measured"};
   Rule<double> last_gap{1e-8, "path.last_gap", "gap that ends the path [-]", "not measured"};
-  Rule<int> trial_changes{2, "path.trial_changes", "choices without progress from tried states [-]", "not measured"};
+  Rule<int> trial_changes{2, "path.trial_changes", "choices without progress from tried states, of the path or of Newton [-]", "not measured"};
 };
 inline constexpr_rules PathRules path_rules;
 

@@ -145,7 +145,7 @@ struct NewtonRules {
   Rule<int> most_inner_steps{
       50, "newton.most_inner_steps",
       "steps of an iteration within another one: interior path, choices by a coarser mesh, "
-      "prediction, given bounds of friction, line search; choices, and returns to them, once Newton has begun [-]",
+      "prediction, given bounds of friction, line search; returns to choices once Newton has begun [-]",
       "measurements.md, 2026-11-30: no bound from 20 to 50 was met"};
   Rule<int> most_halvings{10, "newton.most_halvings",
                           "of an interval, in the search for the pieces of a line function [-]", "not measured"};
