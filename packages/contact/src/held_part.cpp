@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 namespace rpc::contact
@@ -58,13 +57,14 @@ KOKKOS_INLINE_FUNCTION Answer most_against(const double speed, const double slip
   return {limit, weight * friction_bound(limit / weight, f)};
 }
 
-/// T r at point i and its length.
+/// T r at point i and its length; 0 where there is no friction.
 struct Slide {
   double along[3] = {0, 0, 0}, length = 0;
 };
 KOKKOS_INLINE_FUNCTION Slide slide_of(const DeviceView<double *[3][6]> &slide, const LO i, const Coefficients &r)
 {
   Slide s;
+  if (slide.extent(0) == 0) return s;
   double square = 0;
   for (int c = 0; c < 3; ++c) {
     for (int k = 0; k < 6; ++k) s.along[c] += slide(i, c, k) * r[k];
@@ -85,88 +85,53 @@ KOKKOS_INLINE_FUNCTION void add_answer(const Reactions &reactions, const LO i, c
   }
 }
 
-/// The rank of the point that a motion presses in most, of the most of each rank; nothing if it presses none in. Collective.
-std::optional<int> rank_of(const Comm &comm, const Location::value_type &worst, const RigidMotion &motion)
+KOKKOS_INLINE_FUNCTION Friction friction_of(const Reactions &reactions, const LO i)
 {
-  const double most = max_all(comm, std::max(0., worst.val)); // a maximum over no nodes is -DBL_MAX
-  if (!(most > Rounding::pressed * std::sqrt(dot(motion, motion)))) return std::nullopt;
-  return min_all(comm, worst.val == most ? comm.getRank() : comm.getSize());
+  return reactions.friction.exists() ? reactions.friction(i) : Friction{};
 }
 
-/// The same as steepest() with friction: the ray of a rigid point.
-RigidMotion steepest_with_friction(const Comm &comm, const Reactions &reactions, const int mine,
-                                   const RigidMotion &motion)
+/// The ray of point i, along which its forces grow without end: m . r_k and, with friction, its share of h . T r_k; 0 if it has none.
+KOKKOS_INLINE_FUNCTION void add_ray(const Reactions &reactions, const LO i, const Coefficients &r, double *const row)
+{
+  const Slide slide = slide_of(reactions.slide, i, r);
+  const Answer answer = most_against(speed(reactions.along, i, r), slide.length, reactions.limit(i),
+                                     reactions.weight(i), friction_of(reactions, i));
+  if (!answer.endless) return;
+  add_answer(reactions, i, answer.pressure > 0 ? answer.pressure : 1, answer.friction, slide, row);
+}
+
+/// The ray of the rigid point that is the most against a motion, for the ray's size; 0 if there is none. Collective.
+RigidMotion steepest(const Comm &comm, const Reactions &reactions, const int mine, const RigidMotion &motion)
 {
   const Coefficients r = coefficients_of(motion);
   const Reactions all_reactions = reactions;
-  const auto part = reactions.part;
   Location::value_type worst;
   Kokkos::parallel_reduce(
-      "rpc::contact::steepest_with_friction", device_range(static_cast<LO>(part.extent(0))),
+      "rpc::contact::steepest", device_range(static_cast<LO>(reactions.part.extent(0))),
       KOKKOS_LAMBDA(const LO i, Location::value_type &most) {
-        if (part(i) != mine) return;
-        const Slide slide = slide_of(all_reactions.slide, i, r);
-        const Answer answer = most_against(speed(all_reactions.along, i, r), slide.length, all_reactions.limit(i),
-                                           all_reactions.weight(i), all_reactions.friction(i));
-        if (!answer.endless) return;
+        if (all_reactions.part(i) != mine) return;
         double row[6] = {}, squares = 0, along = 0;
-        add_answer(all_reactions, i, answer.pressure > 0 ? answer.pressure : 1, answer.friction, slide, row);
+        add_ray(all_reactions, i, r, row);
         for (int k = 0; k < 6; ++k) {
           squares += row[k] * row[k];
           along += row[k] * r[k];
         }
-        const double relative = along / math::sqrt(squares);
+        const double relative = squares > 0 ? along / math::sqrt(squares) : 0;
         if (!(relative > most.val)) return;
         most.val = relative;
         most.loc = i;
       },
       Location(worst));
   RigidMotion local{}, all{};
-  const std::optional<int> owner = rank_of(comm, worst, motion);
-  if (!owner) return all;
-  if (*owner == comm.getRank()) {
+  const double most = max_all(comm, std::max(0., worst.val)); // a maximum over no nodes is -DBL_MAX
+  if (!(most > Rounding::pressed * std::sqrt(dot(motion, motion)))) return all;
+  if (min_all(comm, worst.val == most ? comm.getRank() : comm.getSize()) == comm.getRank()) {
     const DeviceView<double[6]> row("rpc::contact::ray");
     const LO i = worst.loc;
     Kokkos::parallel_for(
-        "rpc::contact::ray", device_range(1), KOKKOS_LAMBDA(const LO) {
-          const Slide slide = slide_of(all_reactions.slide, i, r);
-          const Answer answer = most_against(speed(all_reactions.along, i, r), slide.length, all_reactions.limit(i),
-                                             all_reactions.weight(i), all_reactions.friction(i));
-          add_answer(all_reactions, i, answer.pressure > 0 ? answer.pressure : 1, answer.friction, slide, row.data());
-        });
+        "rpc::contact::ray", device_range(1), KOKKOS_LAMBDA(const LO) { add_ray(all_reactions, i, r, row.data()); });
     const auto values = to_host(row);
     for (int k = 0; k < 6; ++k) local[k] = values(k);
-  }
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 6, local.data(), all.data());
-  return all;
-}
-
-/// m . r_k of the rigid node that the motion presses in most for the size of its row; 0 if it presses in none.
-RigidMotion steepest(const Comm &comm, const Reactions &reactions, const int mine, const RigidMotion &motion)
-{
-  const Coefficients r = coefficients_of(motion);
-  const auto along = reactions.along;
-  const auto limit = reactions.limit;
-  const auto part = reactions.part;
-  Location::value_type worst;
-  Kokkos::parallel_reduce(
-      "rpc::contact::steepest", device_range(static_cast<LO>(part.extent(0))),
-      KOKKOS_LAMBDA(const LO i, Location::value_type &most) {
-        if (part(i) != mine || !is_rigid(limit(i))) return;
-        double squares = 0;
-        for (int k = 0; k < 6; ++k) squares += along(i, k) * along(i, k);
-        const double relative = speed(along, i, r) / std::sqrt(squares);
-        if (!(relative > most.val)) return;
-        most.val = relative;
-        most.loc = i;
-      },
-      Location(worst));
-  RigidMotion local{}, all{};
-  const std::optional<int> owner = rank_of(comm, worst, motion);
-  if (!owner) return all;
-  if (*owner == comm.getRank()) {
-    const auto rows = to_host(along);
-    for (int k = 0; k < 6; ++k) local[k] = rows(worst.loc, k);
   }
   Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 6, local.data(), all.data());
   return all;
@@ -245,60 +210,35 @@ std::vector<double> HeldPart::coordinates(const RigidMotion &force) const
 Furthest HeldPart::furthest(const std::vector<double> &q) const
 {
   const RigidMotion r = motion(q);
-  const bool friction = reactions_.friction.anywhere;
-  Furthest endless{coordinates(friction ? steepest_with_friction(comm_, reactions_, part_, r)
-                                        : steepest(comm_, reactions_, part_, r)),
-                   true};
+  Furthest endless{coordinates(steepest(comm_, reactions_, part_, r)), true};
   double squares = 0;
   for (const double entry : endless.at) squares += entry * entry;
   if (squares == 0) return {coordinates(carried(r)), false};
   for (double &entry : endless.at) entry /= std::sqrt(squares);
-  if (friction) endless.bounded = coordinates(carried(r));
+  if (reactions_.friction.anywhere) endless.bounded = coordinates(carried(r));
   return endless;
 }
 
 RigidMotion HeldPart::carried(const RigidMotion &motion, const LO begin, const LO end) const
-{
-  if (reactions_.friction.anywhere) return carried_with_friction(motion, begin, end);
-  const Coefficients r = coefficients_of(motion);
-  const auto along = reactions_.along;
-  const auto limit = reactions_.limit;
-  const auto part = reactions_.part;
-  const int mine = part_;
-  const double rounding = Rounding::speed * std::sqrt(dot(motion, motion));
-  const auto local = sums_over(
-      "rpc::contact::carried", Kokkos::RangePolicy<ExecutionSpace, LO>(begin, end), 6,
-      KOKKOS_LAMBDA(const LO i, double sum[]) {
-        if (part(i) != mine || is_rigid(limit(i)) || !(speed(along, i, r) > rounding)) return;
-        for (int k = 0; k < 6; ++k) sum[k] += limit(i) * along(i, k);
-      });
-  RigidMotion all;
-  Teuchos::reduceAll(comm_, Teuchos::REDUCE_SUM, 6, local.data(), all.data());
-  return all;
-}
-
-RigidMotion HeldPart::carried_with_friction(const RigidMotion &motion, const LO begin, const LO end) const
 {
   const Coefficients r = coefficients_of(motion);
   const Reactions reactions = reactions_;
   const int mine = part_;
   const double rounding = Rounding::speed * std::sqrt(dot(motion, motion));
   const auto local = sums_over(
-      "rpc::contact::carried_with_friction", Kokkos::RangePolicy<ExecutionSpace, LO>(begin, end), 6,
+      "rpc::contact::carried", Kokkos::RangePolicy<ExecutionSpace, LO>(begin, end), 6,
       KOKKOS_LAMBDA(const LO i, double sum[]) {
         if (reactions.part(i) != mine) return;
         const double towards = speed(reactions.along, i, r);
         Slide slide = slide_of(reactions.slide, i, r);
         if (!(slide.length > rounding)) slide.length = 0;
+        const Friction f = friction_of(reactions, i);
         const Answer answer = most_against(math::magnitude(towards) > rounding ? towards : 0, slide.length,
-                                           reactions.limit(i), reactions.weight(i), reactions.friction(i));
-        if (answer
-                .endless) { // by rounding, or steepest() had found its ray: what is left is the bound without pressure
-          const Friction f = reactions.friction(i);
+                                           reactions.limit(i), reactions.weight(i), f);
+        if (answer.endless) // by rounding, or steepest() has found its ray: what is left is the bound without pressure
           add_answer(reactions, i, 0, reactions.weight(i) * math::fmin(f.bound, f.limit), slide, sum);
-        } else {
+        else
           add_answer(reactions, i, answer.pressure, answer.friction, slide, sum);
-        }
       });
   RigidMotion all;
   Teuchos::reduceAll(comm_, Teuchos::REDUCE_SUM, 6, local.data(), all.data());

@@ -42,7 +42,6 @@ public:
   fem::RigidMotion carried(const fem::RigidMotion &motion, LO begin, LO end) const;
   /// The same over all nodes.
   fem::RigidMotion carried(const fem::RigidMotion &motion) const;
-  fem::RigidMotion carried_with_friction(const fem::RigidMotion &motion, LO begin, LO end) const;
   int part() const { return part_; }
 
 private:
