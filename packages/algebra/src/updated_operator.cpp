@@ -104,9 +104,9 @@ LO count_unsymmetric(const DeviceView<double ***> &block)
   return count;
 }
 
-/// y at the nodes += alpha U x.
+/// y += alpha U x at the nodes. @param compact  y has the nodes' rows alone, side by side
 void add_update(const DeviceView<LO *> &nodes, const DeviceView<double ***> &update, const double alpha,
-                const Vector &x, Vector &y)
+                const Vector &x, Vector &y, const bool compact = false)
 {
   const int dim = static_cast<int>(update.extent(1));
   const auto from = device_read(x);
@@ -116,29 +116,16 @@ void add_update(const DeviceView<LO *> &nodes, const DeviceView<double ***> &upd
         for (int k = 0; k < dim; ++k) {
           double sum = 0;
           for (int l = 0; l < dim; ++l) sum += update(n, k, l) * from(dof(dim, nodes(n), l));
-          to(dof(dim, nodes(n), k)) += alpha * sum;
+          to(dof(dim, compact ? n : nodes(n), k)) += alpha * sum;
         }
       });
+  if (compact) Kokkos::fence();
 }
 void add_update(const DeviceView<LO *> &nodes, const DeviceView<double ***> &update, const double alpha,
                 const MultiVector &x, MultiVector &y)
 {
   for (std::size_t v = 0; v < x.getNumVectors(); ++v)
     add_update(nodes, update, alpha, *x.getVector(v), *y.getVectorNonConst(v));
-}
-
-/// (nodes times dim) y_n += U_n x_n.
-void add_compact(const DeviceView<LO *> &nodes, const DeviceView<double ***> &update, const Vector &x, Vector &y)
-{
-  const int dim = static_cast<int>(update.extent(1));
-  const auto from = device_read(x);
-  const auto to = device_write(y);
-  Kokkos::parallel_for(
-      "rpc::algebra::add_compact", device_range(static_cast<LO>(nodes.extent(0))), KOKKOS_LAMBDA(const LO n) {
-        for (int k = 0; k < dim; ++k)
-          for (int l = 0; l < dim; ++l) to(dof(dim, n, k)) += update(n, k, l) * from(dof(dim, nodes(n), l));
-      });
-  Kokkos::fence();
 }
 
 DeviceView<double ***> sum_of(const DeviceView<double ***> &a, const DeviceView<double ***> &b)
@@ -228,8 +215,8 @@ void UpdatedOperator::follow(const UpdatedOperator &other)
 
 void UpdatedOperator::add_update_at_nodes(const Vector &x, Vector &y) const
 {
-  add_compact(nodes_, update_, x, y);
-  if (coupling_.extent(0) > 0) add_compact(nodes_, coupling_, x, y);
+  add_update(nodes_, update_, 1, x, y, true);
+  if (coupling_.extent(0) > 0) add_update(nodes_, coupling_, 1, x, y, true);
 }
 
 DeviceView<double ***> UpdatedOperator::blocks() const
