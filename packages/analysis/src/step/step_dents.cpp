@@ -76,18 +76,13 @@ Vector moved_along(const Problem &problem, const double t, const Vector &u)
     const auto from = device_read(u), to = device_read(*dirichlet.value);
     Kokkos::parallel_reduce(
         "rpc::analysis::moved_along", device_range(nodes),
-        KOKKOS_LAMBDA(const LO n, double &change) {
+        KOKKOS_LAMBDA(const LO n, double &change, double &number) {
           const LO i = dof(dim, n, c);
-          if (condition(i) >= 0 && !(ties && group(i) >= 0)) change += to(i) - from(i);
+          if (condition(i) < 0 || (ties && group(i) >= 0)) return;
+          change += to(i) - from(i);
+          number += 1;
         },
-        sums[c]);
-    Kokkos::parallel_reduce(
-        "rpc::analysis::num_moved_along", device_range(nodes),
-        KOKKOS_LAMBDA(const LO n, double &number) {
-          const LO i = dof(dim, n, c);
-          if (condition(i) >= 0 && !(ties && group(i) >= 0)) number += 1;
-        },
-        sums[dim + c]);
+        sums[c], sums[dim + c]);
   }
   sums = summed(d.mesh->comm(), sums);
   const auto to = device_write(moved);
