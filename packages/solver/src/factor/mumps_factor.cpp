@@ -37,7 +37,8 @@ enum Control {
 enum Info { status = 0, entries_of_factor = 2, num_negative = 11, megabytes = 15 };
 enum Job : int { begin = -1, end = -2, analysis = 1, factorization = 2, solution = 3 };
 constexpr int by_hand = 1, on_all_ranks = 3, is_definite = 1, dense = 0, sparse = 3;
-constexpr int first_more_memory = 20; // per cent of what the analysis has found
+constexpr int first_more_memory = 20;      // per cent of what the analysis has found
+constexpr double seconds_of_interrupt = 1; // that one may wait: a factor of less is made in this thread [s]
 // What MUMPS answers.
 constexpr int too_little_memory[] = {-8, -9, -14, -15, -17, -19, -20}, out_of_memory = -13, singular = -10,
               not_definite_root = -40;
@@ -199,7 +200,7 @@ bool MumpsFactor::make(const std::vector<double> &value)
     const auto impl = impl_;
     if (work_goes_on()) throw Interrupted();
     const auto work = [impl] { impl->call(factorization); };
-    if (cost().seconds < linear_rules.seconds_in_background)
+    if (cost().seconds < seconds_of_interrupt)
       work();
     else if (!ended_before_interrupt(*comm_, work))
       throw Interrupted();

@@ -47,13 +47,15 @@ std::unique_ptr<SparseFactor> SparseFactor::analyse(const RCP<const Comm> &comm,
                                                     const SymmetricEntries &entries, const int dofs_per_node)
 {
 #ifdef RPC_HAVE_MUMPS
-  // A band has no indices and no tree: it is faster where it is narrow.
+  // A band has no indices and no tree: it is taken where its factor takes no longer than MUMPS' analysis alone.
   if (comm->getSize() == 1) {
-    if (size <= linear_rules.most_rows_to_order) {
+    const double seconds_of_analysis = cost_model.analysis_of_row * size;
+    if (size <= linear_rules.most_rows_on_each_rank) {
       auto band = BandFactor::in_cuthill_mckee_order(size, entries);
-      if (band->cost().operations <= linear_rules.most_work_of_band) return band;
+      if (band->cost().seconds <= seconds_of_analysis) return band;
     }
-    if (width_of(entries) <= linear_rules.most_width) return BandFactor::as_numbered(size, entries);
+    if (BandFactor::cost_of(size, width_of(entries)).seconds <= seconds_of_analysis)
+      return BandFactor::as_numbered(size, entries);
   }
   return std::make_unique<MumpsFactor>(comm, size, entries, dofs_per_node);
 #else

@@ -80,21 +80,15 @@ struct LinearRules {
   // Factors, (4.10) - (4.12).
   Rule<GO> most_rows_on_each_rank{
       5200, "linear.most_rows_on_each_rank",
-      "rows up to which each rank has the whole factor, and the coarsest mesh is factored [-]",
+      "rows up to which each rank has the whole factor, in Cuthill-McKee's order if it makes a narrow band, and the "
+      "coarsest mesh is factored [-]",
       "a solve then takes one sum over the ranks"};
   Rule<int> first_iterations_of_factor{3, "linear.first_iterations_of_factor",
                                        "iterations before a factor is judged [-]", "(4.12)"};
-  Rule<int> most_rows_to_order{6000, "linear.most_rows_to_order",
-                               "rows of a band in Cuthill-McKee's order, at most [-]", "times of both"};
-  Rule<double> most_work_of_band{1e8, "linear.most_work_of_band", "multiplications of such a band [-]",
-                                 "times of both"};
-  Rule<int> most_width{200, "linear.most_width", "width of a band as numbered [-]", "times of both"};
   Rule<double> short_time{5e-3, "linear.short_time", "a factor made for the slightest change [s]", "not measured"};
   Rule<double> kept_of_free{0.25, "linear.kept_of_free",
                             "entries of an update, and of the model that chooses states, over the free memory [-]",
                             "not measured"};
-  Rule<double> seconds_in_background{1, "linear.seconds_in_background", "factor made where an interrupt is seen [s]",
-                                     "not measured"};
 };
 inline constexpr_rules LinearRules linear_rules;
 
