@@ -5,6 +5,7 @@
 #include "rpc/analysis/rules.hpp"
 #include "rpc/io/deck.hpp"
 #include "rpc/mesh/box_grid.hpp"
+#include "rpc/solver/rules.hpp"
 #include "rules.hpp"
 #include "scene.hpp"
 
@@ -100,8 +101,8 @@ GO foreseen_unknowns(const Teuchos::ParameterList &deck)
 GO most_unknowns_of_host(const int threads, const bool nearly_incompressible)
 {
   const HandOverRules &rules = hand_over_rules;
-  const double unknowns =
-      rules.of_one_thread * std::pow(std::clamp<double>(threads, 1, rules.most_threads), double(rules.power));
+  const double unknowns = rules.of_one_thread *
+                          std::pow(std::clamp<double>(threads, 1, rules.most_threads), double(solver::cost_model.gain));
   return static_cast<GO>(nearly_incompressible ? unknowns / rules.work : unknowns);
 }
 

@@ -10,8 +10,6 @@ namespace rpc
 struct HandOverRules {
   Rule<double> of_one_thread{50000, "hand_over.of_one_thread", "unknowns from which a GPU is faster than a thread [-]",
                              "doc/portability.md"};
-  Rule<double> power{0.75, "hand_over.power", "of the number of threads, which the unknowns grow with [-]",
-                     "doc/portability.md"};
   Rule<double> most_threads{16, "hand_over.most_threads", "threads that count [-]", "doc/portability.md"};
   Rule<double> work{10, "hand_over.work",
                     "of nearly incompressible bodies over that of others, for a thread [-]; off: 1",

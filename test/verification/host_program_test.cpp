@@ -34,9 +34,9 @@ TEST(HostProgram, ForeseesTheLargestOfAdaptedMeshes)
 TEST(HostProgram, TakesMoreUnknownsWithMoreThreads)
 {
   EXPECT_EQ(rpc::most_unknowns_of_host(1, false), 50000);
-  EXPECT_EQ(rpc::most_unknowns_of_host(16, false), 400000);
-  EXPECT_EQ(rpc::most_unknowns_of_host(64, false), 400000); // the memory of a host serves no more
-  EXPECT_EQ(rpc::most_unknowns_of_host(16, true), 40000);
+  EXPECT_EQ(rpc::most_unknowns_of_host(16, false), 263901);
+  EXPECT_EQ(rpc::most_unknowns_of_host(64, false), 263901); // the memory of a host serves no more
+  EXPECT_EQ(rpc::most_unknowns_of_host(16, true), 26390);
 }
 
 } // namespace

@@ -110,7 +110,7 @@ struct CostModel {
   Rule<double> factor_entry_in_solve{3e-9, "cost.factor_entry_in_solve", "the same in a solve [s]", "the same"};
   Rule<double> columns_for_one{12, "cost.columns_for_one", "columns at contact nodes for one right side [-]",
                                "10 to 24"};
-  Rule<double> gain{0.6, "cost.gain", "P ranks are P to this power times as fast [-]", "two ranks"};
+  Rule<double> gain{0.6, "cost.gain", "P ranks, or threads, are P to this power times as fast [-]", "two ranks"};
   // A band factor: LAPACK works by blocks where it is wide.
   Rule<double> wide{64, "cost.wide", "width of a wide band [-]", "LAPACK's blocks"};
   Rule<double> wide_band{1.5e-11, "cost.wide_band", "of a multiplication in a wide band [s]", "one core"};
