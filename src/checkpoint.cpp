@@ -311,6 +311,7 @@ analysis::HistoryState Checkpoints::state_of(Whole whole) const
       state.largest_estimate = *largest;
     state.misread_force = text.at("misread_force");
     state.misread_energy = text.at("misread_energy");
+    state.misread_penetration = text.at("misread_penetration");
   } catch (const json::parse_error &) { // on all ranks: they read the same text
     throw Error(ExitCode::bad_input, "restart: \"" + path +
                                          "\" is damaged: its text is not what was written. Take an older one, "
@@ -337,7 +338,8 @@ void Checkpoints::write(const analysis::HistoryState &state)
                {"assemblies", state.matrix_assemblies},
                {"largest_estimate", state.largest_estimate},
                {"misread_force", state.misread_force},
-               {"misread_energy", state.misread_energy}};
+               {"misread_energy", state.misread_energy},
+               {"misread_penetration", state.misread_penetration}};
   for (const auto &[name, content] : scene_.identity) text["deck"][name] = content;
   text["records"] = json::array();
   for (const StepRecord &record : state.records) text["records"].push_back(to_json(record, scope));

@@ -141,10 +141,9 @@ void add_what_a_mesh_leaves(const Cycle &last, const std::vector<double> &eta, O
              [](const double error, const double left) { return std::max(error, left); });
   // The largest penetration may be that of a corner; what remains of it where the body has drawn back is as uncertain as the dents.
   const double deepest = std::max(last.contact.max_penetration, last.contact.max_dent);
-  errors.max_penetration = std::max({errors.max_penetration, last.estimate * deepest, last.peak.rounded_depth});
-  const double penetration = last.contact.max_penetration;
+  const double misread = last.contact.gives_way() ? left_by_misreading(last).penetration : deepest;
   errors.max_penetration =
-      std::max(errors.max_penetration, last.contact.gives_way() ? last.misread_penetration - penetration : penetration);
+      std::max({errors.max_penetration, last.estimate * deepest, last.peak.rounded_depth, misread});
   if (hardly_finer(eta)) errors.max_pressure = std::max(errors.max_pressure, last.estimate * last.contact.max_pressure);
   errors.max_pressure =
       last.peak.at_bound ? 0 : std::max({errors.max_pressure, last.recovered_max_pressure, last.peak.rounded});
@@ -264,6 +263,7 @@ void add_what_earlier_steps_leave(const CoarserHistory &coarser, const Cycle &la
   errors.max_pressure += shown(last.contact.max_pressure - other.contact.max_pressure);
   errors.contact_length += shown(last.contact.contact_length - other.contact.contact_length);
   errors.max_penetration += shown(last.contact.max_penetration - other.contact.max_penetration);
+  if (last.contact.max_dent > 0) errors.max_penetration = std::max(errors.max_penetration, earlier.misread.penetration);
 }
 
 /// Of forces and moments that the load alone fixes the errors are those that meshes show.
@@ -299,7 +299,8 @@ LeftOpen left_by_misreading(const Cycle &cycle)
 {
   const double moved = moved_by(cycle, force_at_work(cycle.contact.force, cycle.reactions));
   return {moved > 0 ? std::min(cycle.misread_force, force_of(cycle.misread_energy, moved)) : cycle.misread_force,
-          cycle.misread_energy};
+          cycle.misread_energy,
+          cycle.contact.gives_way() ? std::max(0., cycle.misread_penetration - cycle.contact.max_penetration) : 0};
 }
 
 LeftOpen left_by_jumps(const Cycle &cycle)

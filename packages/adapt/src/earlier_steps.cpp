@@ -58,14 +58,15 @@ LeftOpen misread_so_far(const Solution &s)
   LeftOpen most = s.earlier_misread;
   if (!s.adaptation || s.adaptation->cycles.empty()) return most;
   const auto own = left_by_misreading(s.adaptation->cycles[best_of(s.adaptation->cycles)]);
-  return {std::max(most.force, own.force), std::max(most.energy, own.energy)};
+  return {std::max(most.force, own.force), std::max(most.energy, own.energy),
+          std::max(most.penetration, own.penetration)};
 }
 
 analysis::HistoryState state_of(const Solution &s)
 {
   const LeftOpen misread = misread_so_far(s);
-  return {s.discretization,    s.mesh_options,     *s.memory,     std::nullopt,  s.history,
-          s.matrix_assemblies, s.largest_estimate, misread.force, misread.energy};
+  return {s.discretization,    s.mesh_options,     *s.memory,     std::nullopt,   s.history,
+          s.matrix_assemblies, s.largest_estimate, misread.force, misread.energy, misread.penetration};
 }
 
 Solution step_of(analysis::HistoryState state)
@@ -78,7 +79,7 @@ Solution step_of(analysis::HistoryState state)
   s.history = std::move(state.records);
   s.matrix_assemblies = state.matrix_assemblies;
   s.largest_estimate = state.largest_estimate;
-  s.earlier_misread = {state.misread_force, state.misread_energy};
+  s.earlier_misread = {state.misread_force, state.misread_energy, state.misread_penetration};
   return s;
 }
 

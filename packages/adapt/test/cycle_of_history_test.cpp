@@ -51,6 +51,23 @@ TEST(ErrorBarsOfHistories, CountWhatMeshesOfEarlierStepsHaveLeft)
   EXPECT_NEAR(errors.energy, own.energy + 0.3, 1e-12);
 }
 
+TEST(ErrorBarsOfHistories, OfThePenetrationAreNoLessThanWhatAJumpHasLeftOfTheDentsOfAnEarlierStep)
+{
+  std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10, 30)};
+  for (Cycle &cycle : cycles) cycle.contact.max_penetration = cycle.contact.max_dent = 0.5;
+  cycles.back().misread_penetration = 0.6;
+  EXPECT_NEAR(adapt::left_by_misreading(cycles.back()).penetration, 0.1, 1e-12);
+  const auto bar = [&](const double of_earlier_step) {
+    return observed_errors(cycles, coarser_history(0.6, cycles.back()), {true, 0.2, 2, {0, 0, of_earlier_step}})
+        .max_penetration;
+  };
+  EXPECT_NEAR(bar(0.05), 0.1, 1e-12);
+  EXPECT_NEAR(bar(0.2), 0.2, 1e-12);
+  cycles.back().contact.max_dent = 0; // springs have no memory
+  cycles.back().contact.foundation_energy = 1;
+  EXPECT_LT(bar(0.2), 0.2);
+}
+
 TEST(ErrorBarsOfHistories, OfABodyThatDoesNotTouchCountWhatEarlierStepsLeaveOfItsGap)
 {
   const std::vector<Cycle> cycles = {open_mesh(0.1, 0.03), open_mesh(0.02, 0.03)};

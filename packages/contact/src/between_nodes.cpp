@@ -41,8 +41,9 @@ constexpr double notable = 0.05;
 struct Found {
   double deepest = 0; // e [m]
   Point place{};
-  double width = 0;   // of the part in the foundation [m]
-  double squared = 0; // of an unseen facet, its part in twice the energy [J]
+  double width = 0;      // of the part in the foundation [m]
+  double squared = 0;    // of an unseen facet, its part in twice the energy [J]
+  double pressed_in = 0; // how deep the foundation may have been pressed in by an unseen facet [m]
   double largest_excess = -std::numeric_limits<double>::infinity(); // e of all samples, < 0 outside the foundation [m]
 };
 
@@ -76,8 +77,12 @@ struct SideSamples {
   {
     Found found;
     const double most_allowed = rows.most_allowed(f);
-    std::vector<std::pair<double, Point>> inside; // depths and places
-    double radii = 0;                             // in axisymmetry the samples count by them
+    struct Inside {
+      double depth, dent;
+      Point place;
+    };
+    std::vector<Inside> inside;
+    double radii = 0; // in axisymmetry the samples count by them
     const std::size_t run = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(lattice.points.size()))));
     bool near = true;
     for (std::size_t n = 0; n < lattice.points.size(); ++n) {
@@ -91,7 +96,7 @@ struct SideSamples {
       const double depth = at ? at->penetration[n] - sample.allowed : excess_at(sample, options);
       radii += axisymmetric ? sample.place[0] : 1;
       if (depth > found.largest_excess) found.largest_excess = depth;
-      if (depth > least) inside.emplace_back(depth, sample.place);
+      if (depth > least) inside.push_back({depth, sample.allowed, sample.place});
       if (!(depth > std::max(least, found.deepest))) continue;
       found.deepest = depth;
       found.place = sample.place;
@@ -99,8 +104,10 @@ struct SideSamples {
     if (inside.empty()) return found;
     const double share = double(inside.size()) / static_cast<double>(lattice.points.size());
     found.width = rows.size(f) * std::pow(share, 1. / (rows.dim - 1));
-    for (const auto &[depth, place] : inside)
+    for (const auto &[depth, dent, place] : inside) {
       found.squared += (axisymmetric ? place[0] : 1) * pushed_out(options, depth, modulus, found.width, place);
+      found.pressed_in = std::max(found.pressed_in, pressed_in(options, place, dent, depth, rows.size(f) / modulus));
+    }
     found.squared *= radii > 0 ? rows.area(f) / radii : 0;
     return found;
   }
@@ -156,11 +163,17 @@ struct SideSamples {
 };
 
 /// What is hidden between the samples of a face in space. It is taken for a paraboloid.
-Found found_in(const HiddenPart &hidden, const ContactOptions &options, const double modulus)
+/// @param dent  the deepest of the face   @param size  of the face [m]
+Found found_in(const HiddenPart &hidden, const ContactOptions &options, const double modulus, const double dent,
+               const double size)
 {
   const double area = 0.25 * 3.14159265358979 * hidden.width[0] * hidden.width[1];
   const double width = std::sqrt(hidden.width[0] * hidden.width[1]);
-  return {hidden.depth, hidden.place, width, area / 3 * pushed_out(options, hidden.depth, modulus, width, hidden.place),
+  return {hidden.depth,
+          hidden.place,
+          width,
+          area / 3 * pushed_out(options, hidden.depth, modulus, width, hidden.place),
+          pressed_in(options, hidden.place, dent, hidden.depth, size / modulus),
           hidden.depth};
 }
 
@@ -202,12 +215,14 @@ PlaceBetweenNodes deepest_of_all(const Comm &comm, const PlaceBetweenNodes &mine
 }
 
 /// Looks at the facets of one side.
+/// @param diameter  of the body [m]
 /// @param open_by  where nothing touches, the smallest gap at nodes [m]: facets that may be nearer have samples then, too; else minus infinity
 /// @return twice the energy of its unseen facets, of this rank [J]
 double look_at_side(const fem::Discretization &d, const mesh::Side &side, const ContactOptions &options,
                     const ContactNodes &points, const fem::Materials &materials, const Vector &u, const int k,
-                    const double least, const double open_by, ContactResult &result, BetweenNodes &mine)
+                    const double diameter, const double open_by, ContactResult &result, BetweenNodes &mine)
 {
+  const double least = Rounding::depth * diameter;
   const mesh::Mesh &mesh = *d.mesh;
   const mesh::Element facet = mesh.element.facet();
   const FacetRows rows = facet_rows(d, side, points, result, k, u);
@@ -246,7 +261,7 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     possible.push_back(samples.most_possible(f, shape, triangle));
     to_search += searches && possible.back() >= 0 && rows.bears_nothing(f) ? 1 : 0;
   }
-  const GapReading reading{options, rows, revolution};
+  const GapReading reading{options, rows, revolution, diameter};
   const int most_searched =
       static_cast<int>(Density::searched / std::max(GO(1), sum_all(mesh.comm(), to_search))); // of each facet
   const auto block = to_host(mesh.block);
@@ -267,7 +282,7 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
       found = densely.look(f, modulus, least, touches ? &sampled : nullptr);
       if (!touches && searches && !(found.deepest > 0))
         if (const auto hidden = find_hidden_part(rows, f, shape, options, triangle, least, most_searched))
-          found = found_in(*hidden, options, modulus);
+          found = found_in(*hidden, options, modulus, rows.most_allowed(f), rows.size(f));
     } else if (possible[n] > -open_by) {
       found = (facet.dim == 1 && detail == nullptr ? samples : few).look(f, modulus, least);
     }
@@ -284,6 +299,7 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     } else if (touches && detail == nullptr) {
       mine.interpolation_work += reading.work_of_interpolation(f, sampled);
     }
+    if (!touches) mine.misread_penetration = std::max(mine.misread_penetration, found.pressed_in);
     if (touches) off_interpolant[n] = off_interpolants(sampled);
     if (touches && !off_interpolant[n].hides(0)) smooth = std::max(smooth, off_interpolant[n].whole);
     squared[f] = found.squared;
@@ -328,8 +344,8 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
   const Comm &comm = d.mesh->comm();
   result.between = {};
   if (sides.empty()) return;
-  const double least = Rounding::depth * mesh::diameter(*d.mesh);
-  if (points.num_weightless > 0) mark_unseen_points(points, least, result);
+  const double diameter = mesh::diameter(*d.mesh);
+  if (points.num_weightless > 0) mark_unseen_points(points, Rounding::depth * diameter, result);
   const double open_by =
       result.total.contact_length > 0 ? -std::numeric_limits<double>::infinity() : smallest_gap(comm, points, result);
   for (std::size_t k = 0; k < sides.size(); ++k) {
@@ -339,7 +355,7 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
       for (auto *const none : {&result.between.unseen_squared, &result.between.unseen_width})
         none->push_back(DeviceView<double *>("rpc::contact::nothing_unseen", sides[k]->facets.extent(0)));
     else
-      squared = look_at_side(d, *sides[k], options[k], points, materials, u, static_cast<int>(k), least, open_by,
+      squared = look_at_side(d, *sides[k], options[k], points, materials, u, static_cast<int>(k), diameter, open_by,
                              result, mine);
     for (const auto sum : {&BetweenNodes::misread_energy, &BetweenNodes::misread_force, &BetweenNodes::misread_ends,
                            &BetweenNodes::interpolation_work})

@@ -7,6 +7,18 @@
 
 namespace rpc::contact
 {
+namespace
+{
+
+/// The foundation with a layer of the body in series.
+Foundation in_series(const ContactOptions &options, const Point &x, const double dent, const double layer)
+{
+  const double hardening = options.hardening(x);
+  return {options.yield_stress(x) + (hardening > 0 ? hardening * std::max(dent, 0.) : 0), hardening,
+          layer + 1 / options.stiffness(x)};
+}
+
+} // namespace
 
 double GapReading::penetration_at_sample(const LO f, const SampledFacet &at, const std::size_t n) const
 {
@@ -88,28 +100,29 @@ double GapReading::work_of_interpolation(const LO f, const SampledFacet &at) con
   return weights > 0 ? work * rows.area(f) / weights : 0;
 }
 
-Foundation GapReading::law(const Point &x, const double dent, const double layer) const
+double pressed_in(const ContactOptions &options, const Point &x, const double dent, const double depth,
+                  const double layer)
 {
-  const double hardening = options.hardening(x);
-  return {options.yield_stress(x) + (hardening > 0 ? hardening * std::max(dent, 0.) : 0), hardening,
-          layer + 1 / options.stiffness(x)};
+  return dent + depth - layer * pressure_at(depth, in_series(options, x, dent, layer));
 }
 
 Misread GapReading::read(const LO f, const double modulus, const double of_surface, const SampledFacet &at) const
 {
-  const double layer = rows.size(f) / modulus;
+  const double h = rows.size(f), layer = h / modulus;
   double energy[FacetShape::most_nodes], pressure[FacetShape::most_nodes];
   double low = std::numeric_limits<double>::infinity(), high = 0;
   for (int a = 0; a < rows.nodes; ++a) {
     const double p = rows.column(f, a, FacetRows::pressure);
-    const Foundation in_series = law(rows.point(f, a), rows.column(f, a, FacetRows::dent), layer);
+    const Foundation law = in_series(options, rows.point(f, a), rows.column(f, a, FacetRows::dent), layer);
     const double v = rows.column(f, a, FacetRows::penetration) + layer * p;
-    energy[a] = foundation_energy(v, in_series);
-    pressure[a] = pressure_at(v, in_series);
+    energy[a] = foundation_energy(v, law);
+    pressure[a] = pressure_at(v, law);
     low = std::min(low, p);
     high = std::max(high, p);
   }
-  const double moved = (high - low) * rows.size(f) / (2 * of_surface); // by pressures that jump half a facet further
+  constexpr double pi = 3.14159265358979;
+  // By pressures that jump half a facet further, in a half-plane that is at rest a diameter away.
+  const double moved = (high - low) * h / (pi * of_surface) * (1 + std::log(2 * diameter / h));
   Misread found;
   double weights = 0;
   for (std::size_t n = 0; n < at.lattice->points.size(); ++n) {
@@ -119,9 +132,9 @@ Misread GapReading::read(const LO f, const double modulus, const double of_surfa
     const double dent = rows.interpolated(f, shape, FacetRows::dent);
     const double v = penetration_at_sample(f, at, n) + layer * rows.interpolated(f, shape, FacetRows::pressure);
     if (!std::isfinite(v)) return {};
-    const Foundation in_series = law(place, dent, layer);
-    const double p = pressure_at(v, in_series);
-    double off_energy = foundation_energy(v, in_series), off_force = p;
+    const Foundation law = in_series(options, place, dent, layer);
+    const double p = pressure_at(v, law);
+    double off_energy = foundation_energy(v, law), off_force = p;
     for (int a = 0; a < rows.nodes; ++a) {
       off_energy -= shape.value[a] * energy[a];
       off_force -= shape.value[a] * pressure[a];

@@ -32,11 +32,17 @@ struct OffInterpolants {
 };
 OffInterpolants off_interpolants(const SampledFacet &at);
 
+/// How deep the foundation may have been pressed in [m] where the body would lie in it by some depth below the dents if it bore nothing: a layer
+/// of the body gives way in series.                                                                               (3.16a)
+/// @param layer  its compliance [m/Pa]
+double pressed_in(const ContactOptions &options, const Point &x, double dent, double depth, double layer);
+
 /// Of facets that bear a pressure what lies between their nodes: nodal quadrature has the gap's interpolant there.
 struct GapReading {
   const ContactOptions &options;
   const FacetRows &rows;
   bool axisymmetric;
+  double diameter; // of the body [m]
 
   /// The samples of a lattice.
   void sample(LO f, const Lattice &lattice, SampledFacet &found) const;
@@ -56,8 +62,6 @@ private:
   static constexpr double off = 0.25;
   /// Beyond the dents [m].
   double penetration_at_sample(LO f, const SampledFacet &at, std::size_t n) const;
-  /// The foundation with a layer of the body in series.
-  Foundation law(const Point &x, double dent, double layer) const;
 };
 
 } // namespace rpc::contact

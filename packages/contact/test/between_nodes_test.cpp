@@ -3,9 +3,12 @@
 
 #include "rpc/contact/clearance.hpp"
 #include "rpc/contact/surface/sphere.hpp"
+#include "rpc/core/device_values.hpp"
 #include "touching_box.hpp"
 
 #include <cmath>
+#include <functional>
+#include <vector>
 
 namespace between_nodes_test
 {
@@ -33,10 +36,18 @@ struct Looked {
   Looked(fem::Discretization of, const contact::ContactOptions &side, const double pressure = 0)
       : d(std::move(of)), options{side}, points(nodes_of(d, options)), u(rcp(new Vector(d.owned_dofs)))
   {
+    look([=](const Point &) { return pressure; });
+  }
+  /// @param pressure  of the contact point at a place [Pa]
+  void look(const std::function<double(const Point &)> &pressure)
+  {
     contact::ContactState state;
     state.displacement = u;
-    state.multiplier.normal = DeviceView<double *>("pressure", points.size());
-    Kokkos::deep_copy(state.multiplier.normal, pressure);
+    const auto at = to_host(d.mesh->coords);
+    const auto node = to_host(points.node);
+    std::vector<double> of_points;
+    for (LO i = 0; i < points.size(); ++i) of_points.push_back(pressure({at(node(i), 0), at(node(i), 1), 0}));
+    state.multiplier.normal = device_values(of_points, "pressure");
     const auto sides = contact::contact_sides(*d.mesh, options);
     result = contact::contact_result(d, sides, points, state);
     contact::look_between_nodes(d, sides, options, points, steel, *u, result);
@@ -325,12 +336,7 @@ TEST(BetweenNodes, DisplacementAndDentsCount)
   for (const double down : {0.029, 0.04}) {
     const auto u = looked.u->getLocalViewHost(Tpetra::Access::ReadWrite);
     for (std::size_t i = 1; i < u.extent(0); i += 2) u(i, 0) = -down;
-    contact::ContactState state;
-    state.displacement = looked.u;
-    state.multiplier.normal = DeviceView<double *>("pressure", looked.points.size());
-    const auto sides = contact::contact_sides(*looked.d.mesh, looked.options);
-    looked.result = contact::contact_result(looked.d, sides, looked.points, state);
-    contact::look_between_nodes(looked.d, sides, looked.options, looked.points, steel, *looked.u, looked.result);
+    looked.look([](const Point &) { return 0; });
     EXPECT_NEAR(looked.result.total.unseen_penetration, std::max(0., down - 0.03), 1e-12);
   }
 }
@@ -394,15 +400,33 @@ TEST(BetweenNodes, DepthsBesideAJumpOfTheGapCountFromTheSurfaceWithoutDents)
   const auto u = looked.u->getLocalViewHost(Tpetra::Access::ReadWrite);
   for (std::size_t i = 1; i < u.extent(0); i += 2) u(i, 0) = -deep;
   Kokkos::deep_copy(looked.points.dent, deep);
-  contact::ContactState state;
-  state.displacement = looked.u;
-  state.multiplier.normal = DeviceView<double *>("pressure", looked.points.size());
-  Kokkos::deep_copy(state.multiplier.normal, 10.);
-  const auto sides = contact::contact_sides(*looked.d.mesh, looked.options);
-  looked.result = contact::contact_result(looked.d, sides, looked.points, state);
-  contact::look_between_nodes(looked.d, sides, looked.options, looked.points, steel, *looked.u, looked.result);
+  looked.look([](const Point &) { return 10; });
   EXPECT_NEAR(looked.result.between.misread_energy / alone.misread_energy, 1, 1e-9);
   EXPECT_NEAR(looked.result.between.misread_penetration, deep + alone.misread_penetration, 1e-12);
+}
+
+TEST(BetweenNodes, WhereContactEndsAtAJumpWithinAFacetTheBodyMayBePressedInDeeper)
+{
+  // Pressed in by 0.01 m with 10 Pa to the left of x = 0.7, nothing to the right: half a facet more or less of these 10 Pa moves the surface.
+  const double k = 1000, p = 10, h = 0.5;
+  auto side = touching("bottom");
+  side.yield_stress = ScalarField(1e300);
+  side.stiffness = ScalarField(k);
+  side.gap = ScalarField("step", [=](const Point &x) { return x[0] < 0.7 ? -p / k : 1; });
+  Looked looked({2, 1}, side);
+  looked.look([=](const Point &x) { return x[0] < 0.7 ? p : 0; });
+  const double of_surface = 2000 / (1 - 0.3 * 0.3), moved = 2 * p * (h / 2) / (std::acos(-1) * of_surface);
+  EXPECT_NEAR(looked.result.between.misread_penetration, p / k + moved * (1 + std::log(std::sqrt(5.) / (h / 2))), 1e-9);
+}
+
+TEST(BetweenNodes, SpringsUnderAFacetThatMissesThemMayBePressedIn)
+{
+  const double k = 1000, depth = 0.02, h = 0.5, layer = h / (steel.lambda() + 2 * steel.mu());
+  auto side = bump(depth, 0.1);
+  side.yield_stress = ScalarField(1e300);
+  side.stiffness = ScalarField(k);
+  const double pressed_in = depth * (1 / k) / (1 / k + layer);
+  EXPECT_NEAR(Looked({2, 1}, side).result.between.misread_penetration, pressed_in, 1e-5);
 }
 
 TEST(BetweenNodes, TheNoteNamesPlaceDepthAndTheSizeThatWouldSee)

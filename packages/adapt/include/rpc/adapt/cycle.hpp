@@ -95,6 +95,7 @@ std::string error_bar_name(const std::string &key, const ResultScope &scope);
 /// What a mesh leaves open.
 struct LeftOpen {
   double force = 0, energy = 0; ///< [N], [J], in 2D per m
+  double penetration = 0;       ///< of the largest [m]
 };
 
 /// By reading a gap at nodes that jumps or has a kink between them.                                  doc/theory.md (3.16a)

@@ -80,8 +80,8 @@ struct HistoryState {
   int matrix_assemblies = 0;
   /// Of errors in the energy norm, of all steps on adapted meshes [J^(1/2)], in 2D per m; NaN of a run on one mesh, which keeps none.
   double largest_estimate = std::numeric_limits<double>::quiet_NaN();
-  /// The most that reading the gap at nodes has left open in one of them [N], [J], in 2D per m.          doc/theory.md (3.16a)
-  double misread_force = 0, misread_energy = 0;
+  /// The most that reading the gap at nodes has left open in one of them [N], [J], in 2D per m, [m].     doc/theory.md (3.16a)
+  double misread_force = 0, misread_energy = 0, misread_penetration = 0;
 };
 
 /// Reports during the run; empty functions are not called. All are called on all ranks.
