@@ -67,6 +67,24 @@ TEST(ErrorBars, OfTheLargestPressureAreNoneWhereFrictionReachesAnEdge)
   EXPECT_FALSE(std::isnan(without.adaptation->errors.max_pressure));
 }
 
+TEST(ErrorBars, HoldWhereContactEndsAtAJumpOfTheGapWithinAFacet)
+{
+  // The foundation yields up to the jump, at which the side lies deeper between its nodes than any of them: most of the estimate, on the last
+  // mesh. A target of 0.005 on four times as many cells along each edge gives these forces and energies.
+  const Solution s =
+      adapted("/step_punch.xml", "0.03",
+              {"Mesh->Upper={0.7589007936580883, 1}", "Mesh->Cells={8, 4}", "Mesh->Element=Q2",
+               "Material->Poisson's Ratio=0.18737312762420377", "Dirichlet->top->Y=-0.030917123076504623",
+               "Contact->Gap=x > 0.39159355656993095 ? 0 : 0.28", "Contact->Yield Stress=163.96885522174804"});
+  EXPECT_GT(s.estimate->unseen(), 0.5 * s.estimate->total());
+  const auto &errors = s.adaptation->errors;
+  EXPECT_LT(std::abs(s.contact.total.force[1] - 15.55172), errors.contact_force);
+  EXPECT_LT(errors.contact_force, 0.5);
+  EXPECT_LT(std::abs(s.energy - 0.2419836), errors.energy);
+  EXPECT_LT(std::abs(s.contact.total.max_penetration - 0.0033977), errors.max_penetration);
+  EXPECT_LT(std::abs(s.contact.total.contact_length - 0.3673062), errors.contact_length);
+}
+
 TEST(ErrorBars, HoldEnergyAndPressureOfABodyWithReentrantCorners)
 {
   // Adapted to 0.0015, 16 528 dofs.

@@ -15,6 +15,7 @@ ErrorEstimate guide(const Solution &s)
   if (!s.bound || !s.bound->missing.empty()) return estimate;
   estimate.squared = s.bound->squared;
   estimate.parts = {{"guaranteed", s.bound->energy_norm * s.bound->energy_norm}, {ErrorEstimate::unseen_contact, 0.}};
+  estimate.hidden = 0;
   return estimate;
 }
 

@@ -43,6 +43,7 @@ struct Found {
   Point place{};
   double width = 0;      // of the part in the foundation [m]
   double squared = 0;    // of an unseen facet, its part in twice the energy [J]
+  double hidden = 0;     // of that, what reaches nearer to the body than under all nodes that bear [J]
   double pressed_in = 0; // how deep the foundation may have been pressed in by an unseen facet [m]
   double largest_excess = -std::numeric_limits<double>::infinity(); // e of all samples, < 0 outside the foundation [m]
 };
@@ -78,10 +79,11 @@ struct SideSamples {
     Found found;
     const double most_allowed = rows.most_allowed(f);
     struct Inside {
-      double depth, dent;
+      double depth, hidden, dent;
       Point place;
     };
     std::vector<Inside> inside;
+    const double lowest = at ? lowest_bearing_gap(f, *at) : std::numeric_limits<double>::infinity();
     double radii = 0; // in axisymmetry the samples count by them
     const std::size_t run = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(lattice.points.size()))));
     bool near = true;
@@ -96,7 +98,10 @@ struct SideSamples {
       const double depth = at ? at->penetration[n] - sample.allowed : excess_at(sample, options);
       radii += axisymmetric ? sample.place[0] : 1;
       if (depth > found.largest_excess) found.largest_excess = depth;
-      if (depth > least) inside.push_back({depth, sample.allowed, sample.place});
+      if (depth > least) {
+        const double nearer = at ? lowest - gap_of(*at, n) : depth;
+        inside.push_back({depth, std::clamp(nearer, 0., depth), sample.allowed, sample.place});
+      }
       if (!(depth > std::max(least, found.deepest))) continue;
       found.deepest = depth;
       found.place = sample.place;
@@ -104,12 +109,25 @@ struct SideSamples {
     if (inside.empty()) return found;
     const double share = double(inside.size()) / static_cast<double>(lattice.points.size());
     found.width = rows.size(f) * std::pow(share, 1. / (rows.dim - 1));
-    for (const auto &[depth, dent, place] : inside) {
-      found.squared += (axisymmetric ? place[0] : 1) * pushed_out(options, depth, modulus, found.width, place);
+    for (const auto &[depth, hidden, dent, place] : inside) {
+      const double weight = axisymmetric ? place[0] : 1;
+      found.squared += weight * pushed_out(options, depth, modulus, found.width, place);
+      found.hidden += weight * pushed_out(options, hidden, modulus, found.width, place);
       found.pressed_in = std::max(found.pressed_in, pressed_in(options, place, dent, depth, rows.size(f) / modulus));
     }
-    found.squared *= radii > 0 ? rows.area(f) / radii : 0;
+    for (double *const sum : {&found.squared, &found.hidden}) *sum *= radii > 0 ? rows.area(f) / radii : 0;
     return found;
+  }
+
+  /// Of what lies below a sample, without dents [m].
+  static double gap_of(const SampledFacet &at, const std::size_t n) { return at.points[n].along - at.penetration[n]; }
+  /// The least of the nodes that bear a pressure.
+  double lowest_bearing_gap(const LO f, const SampledFacet &at) const
+  {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (int a = 0; a < rows.nodes; ++a)
+      if (rows.column(f, a, FacetRows::bearing) > 0) lowest = std::min(lowest, gap_of(at, at.lattice->node[a]));
+    return lowest;
   }
 
   /// Whether some of a run of samples may lie in the foundation. None does that is further from it than the body moves there. Along fixed normals
@@ -169,11 +187,9 @@ Found found_in(const HiddenPart &hidden, const ContactOptions &options, const do
 {
   const double area = 0.25 * 3.14159265358979 * hidden.width[0] * hidden.width[1];
   const double width = std::sqrt(hidden.width[0] * hidden.width[1]);
-  return {hidden.depth,
-          hidden.place,
-          width,
-          area / 3 * pushed_out(options, hidden.depth, modulus, width, hidden.place),
-          pressed_in(options, hidden.place, dent, hidden.depth, size / modulus),
+  const double squared = area / 3 * pushed_out(options, hidden.depth, modulus, width, hidden.place);
+  return {hidden.depth, hidden.place, width,
+          squared,      squared,      pressed_in(options, hidden.place, dent, hidden.depth, size / modulus),
           hidden.depth};
 }
 
@@ -266,7 +282,7 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
       static_cast<int>(Density::searched / std::max(GO(1), sum_all(mesh.comm(), to_search))); // of each facet
   const auto block = to_host(mesh.block);
   const auto lame = to_host(fem::lame_table(d, materials));
-  std::vector<double> squared(rows.num_facets(), 0.), width(rows.num_facets(), 0.);
+  std::vector<double> squared(rows.num_facets(), 0.), width(rows.num_facets(), 0.), hidden(rows.num_facets(), 0.);
   SampledFacet sampled;
   std::vector<PlaceBetweenNodes> places;
   std::vector<OffInterpolants> off_interpolant(owned.size());
@@ -303,6 +319,7 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     if (touches) off_interpolant[n] = off_interpolants(sampled);
     if (touches && !off_interpolant[n].hides(0)) smooth = std::max(smooth, off_interpolant[n].whole);
     squared[f] = found.squared;
+    hidden[f] = found.hidden;
     places.push_back(place);
   }
   smooth = max_all(mesh.comm(), smooth);
@@ -314,6 +331,7 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
       continue;
     }
     sum += squared[f];
+    mine.hidden_energy += 0.5 * hidden[f];
     width[f] = places[n].width;
     if (places[n].depth > mine.unseen.depth) mine.unseen = places[n];
   }
@@ -358,7 +376,7 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
       squared = look_at_side(d, *sides[k], options[k], points, materials, u, static_cast<int>(k), diameter, open_by,
                              result, mine);
     for (const auto sum : {&BetweenNodes::misread_energy, &BetweenNodes::misread_force, &BetweenNodes::misread_ends,
-                           &BetweenNodes::interpolation_work})
+                           &BetweenNodes::interpolation_work, &BetweenNodes::hidden_energy})
       result.between.*sum += sum_all(comm, mine.*sum);
     result.between.misread_penetration =
         std::max(result.between.misread_penetration, max_all(comm, mine.misread_penetration));

@@ -187,6 +187,7 @@ TEST(BetweenNodes, ABumpBetweenNodesThatTouchBesideItIsUnseen)
     EXPECT_NEAR(looked.result.total.unseen_penetration, depth, 0.1 * depth);
     EXPECT_NEAR(looked.result.between.unseen.width, element.dim == 2 ? 2 * b : std::sqrt(M_PI) * b, 0.3 * b);
     EXPECT_NE(looked.note(1e-3), "");
+    EXPECT_NEAR(looked.result.between.hidden_energy / looked.result.total.unseen_energy, 1, 1e-12);
   }
 }
 
@@ -217,6 +218,9 @@ TEST(BetweenNodes, BetweenNodesThatTouchKinksAndJumpsOfTheGapAreUnseenContactAnd
       if (element.order == 1 && name == "ball") {
         EXPECT_GT(looked.result.total.max_penetration_between_nodes, 0.005);
       }
+      // Beside a jump the gap is that of a node that bears, but of a vertex without weight; before a kink it is smaller.
+      if (element.name() != "P2" || element.dim == 2)
+        EXPECT_EQ(looked.result.between.hidden_energy > 0, name == "kink");
       return looked.result.total.unseen_energy;
     };
     for (const auto &[name, gap] : smooth) EXPECT_EQ(unseen(name, gap), 0) << element.name() << ", " << name;

@@ -304,6 +304,7 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
                     {"contact_equilibrium", all[1]},
                     {"contact_complementarity", all[2]},
                     {ErrorEstimate::unseen_contact, 2 * of.result.total.unseen_energy}};
+  estimate.hidden = 2 * unseen.hidden_energy;
   estimate.rounding = fem::rounding_energy(d, materials, of.u);
   estimate.pressure = std::sqrt(all[3]);
   // In space the recovered stress is poor at single points of unstructured meshes: the mean tells more there.

@@ -125,6 +125,9 @@ struct BetweenNodes {
   std::vector<DeviceView<double *>> unseen_squared; ///< (sides; facets) the part of each in twice `unseen_energy` [J]
   std::vector<DeviceView<double *>>
       unseen_width; ///< (sides; facets) see PlaceBetweenNodes, 0 where nothing is unseen [m]
+  /// Of `unseen_energy`, over all ranks: where facets touch, of samples in front of which the gap is smaller than at all of their nodes that
+  /// bear, and no more than by how much. What lies beside such a node is where contact ends, and (3.16a) tells it [J], in 2D per m.    (10.4b)
+  double hidden_energy = 0;
   // Of facets that touch and within which the gap jumps or has a kink, over all ranks: by how much reading the gap at the nodes alone may be
   // off, and how deep they may have been pressed in, with dents that were there.                               (3.16a)
   double misread_force = 0, misread_energy = 0; ///< [N], [J], in 2D per m
