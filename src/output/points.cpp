@@ -194,7 +194,7 @@ PointValues values_at(const std::vector<ResultPoints> &points, const Scene &scen
   const fem::AtPoints at_points(d, all_places(points));
   PointValues values;
   values.off = at_points.distances();
-  const double rounding = 1e-9 * mesh::diameter(*d.mesh);
+  const double rounding = 1e-9 * d.diameter;
   for (double &off : values.off)
     if (off <= rounding) off = 0;
   MultiVector displacement(d.mesh->owned_nodes, dim);
@@ -227,7 +227,7 @@ void require_inside(const std::vector<ResultPoints> &points, const fem::Discreti
 {
   if (points.empty()) return;
   const auto distance = fem::AtPoints(d, all_places(points)).distances();
-  const double most = beside * mesh::diameter(*d.mesh);
+  const double most = beside * d.diameter;
   on_root(d.mesh->comm(), ExitCode::bad_input, [&] {
     std::size_t row = 0;
     for (const ResultPoints &entry : points)

@@ -218,8 +218,7 @@ void add_place(std::vector<Result> &all, const Scene &scene, const Solution &s)
   if (highest.num_places == 0) return;
   pressure->num_places = highest.num_places;
   pressure->place.assign(highest.place.begin(), highest.place.begin() + s.discretization.dim());
-  pressure->more =
-      " at " + place_text(pressure->place, mesh::diameter(*s.discretization.mesh), scene.model.units.length);
+  pressure->more = " at " + place_text(pressure->place, s.discretization.diameter, scene.model.units.length);
   if (scene.model.contact.size() > 1)
     pressure->more += " on \"" + scene.model.contact[highest.side].name_in_results() + "\"";
   if (const GO others = highest.num_places - 1; others > 0)
@@ -231,7 +230,7 @@ void add_rigid_results(std::vector<Result> &all, const Scene &scene, const Solut
 {
   const auto &sides = s.step.elastic.dirichlet.rigid;
   const int dim = s.discretization.dim();
-  const double size = mesh::diameter(*s.discretization.mesh);
+  const double size = s.discretization.diameter;
   double largest = 0;
   for (const auto &force : s.reactions) largest = std::max(largest, length(force));
   for (std::size_t j = 0; j < sides.size() && j < s.rigid_forces.size(); ++j) {

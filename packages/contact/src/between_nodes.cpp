@@ -231,14 +231,13 @@ PlaceBetweenNodes deepest_of_all(const Comm &comm, const PlaceBetweenNodes &mine
 }
 
 /// Looks at the facets of one side.
-/// @param diameter  of the body [m]
 /// @param open_by  where nothing touches, the smallest gap at nodes [m]: facets that may be nearer have samples then, too; else minus infinity
 /// @return twice the energy of its unseen facets, of this rank [J]
 double look_at_side(const fem::Discretization &d, const mesh::Side &side, const ContactOptions &options,
                     const ContactNodes &points, const fem::Materials &materials, const Vector &u, const int k,
-                    const double diameter, const double open_by, ContactResult &result, BetweenNodes &mine)
+                    const double open_by, ContactResult &result, BetweenNodes &mine)
 {
-  const double least = Rounding::depth * diameter;
+  const double least = Rounding::depth * d.diameter;
   const mesh::Mesh &mesh = *d.mesh;
   const mesh::Element facet = mesh.element.facet();
   const FacetRows rows = facet_rows(d, side, points, result, k, u);
@@ -277,7 +276,7 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     possible.push_back(samples.most_possible(f, shape, triangle));
     to_search += searches && possible.back() >= 0 && rows.bears_nothing(f) ? 1 : 0;
   }
-  const GapReading reading{options, rows, revolution, diameter};
+  const GapReading reading{options, rows, revolution, d.diameter};
   const int most_searched =
       static_cast<int>(Density::searched / std::max(GO(1), sum_all(mesh.comm(), to_search))); // of each facet
   const auto block = to_host(mesh.block);
@@ -362,8 +361,7 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
   const Comm &comm = d.mesh->comm();
   result.between = {};
   if (sides.empty()) return;
-  const double diameter = mesh::diameter(*d.mesh);
-  if (points.num_weightless > 0) mark_unseen_points(points, Rounding::depth * diameter, result);
+  if (points.num_weightless > 0) mark_unseen_points(points, Rounding::depth * d.diameter, result);
   const double open_by =
       result.total.contact_length > 0 ? -std::numeric_limits<double>::infinity() : smallest_gap(comm, points, result);
   for (std::size_t k = 0; k < sides.size(); ++k) {
@@ -373,8 +371,8 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
       for (auto *const none : {&result.between.unseen_squared, &result.between.unseen_width})
         none->push_back(DeviceView<double *>("rpc::contact::nothing_unseen", sides[k]->facets.extent(0)));
     else
-      squared = look_at_side(d, *sides[k], options[k], points, materials, u, static_cast<int>(k), diameter, open_by,
-                             result, mine);
+      squared =
+          look_at_side(d, *sides[k], options[k], points, materials, u, static_cast<int>(k), open_by, result, mine);
     for (const auto sum : {&BetweenNodes::misread_energy, &BetweenNodes::misread_force, &BetweenNodes::misread_ends,
                            &BetweenNodes::interpolation_work, &BetweenNodes::hidden_energy})
       result.between.*sum += sum_all(comm, mine.*sum);

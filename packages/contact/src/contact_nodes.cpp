@@ -224,7 +224,7 @@ DeviceView<double *> scaling_of(const fem::Discretization &d, const fem::Materia
                                 const DeviceView<LO *> &node)
 {
   const auto modulus = fem::youngs_modulus_at_nodes(d, materials, node);
-  const double diameter = mesh::diameter(*d.mesh);
+  const double diameter = d.diameter;
   DeviceView<double *> scaling("rpc::contact::scaling", node.extent(0));
   Kokkos::parallel_for(
       "rpc::contact::scaling", device_range(static_cast<LO>(node.extent(0))),
@@ -356,7 +356,7 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
   for (std::size_t k = 0; k < options.size(); ++k) {
     const auto surface = fem::surface_nodes(d, *sides[k]);
     const SideValues values =
-        side_values(options[k], fem::node_positions(mesh, surface.node), surface.normal, mesh::diameter(mesh), comm);
+        side_values(options[k], fem::node_positions(mesh, surface.node), surface.normal, d.diameter, comm);
     require_outward(options[k], surface, values, comm);
     const auto side_node = to_host(surface.node);
     const auto side_weight = to_host(surface.weight);

@@ -73,7 +73,7 @@ UnevenGap uneven_gap(const fem::Discretization &d, const std::vector<const mesh:
 {
   const mesh::Mesh &mesh = *d.mesh;
   if (!mesh.box || !mesh::periodic(*mesh.box)) return {};
-  const double least = Rounding::depth * mesh::diameter(mesh);
+  const double least = Rounding::depth * d.diameter;
   UnevenGap worst;
   for (std::size_t k = 0; k < sides.size(); ++k) {
     const UnevenGap of_side =

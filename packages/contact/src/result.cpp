@@ -68,7 +68,7 @@ void release_where_clear(const fem::Discretization &d, const mesh::Side &side, c
 {
   // A smooth contact opens on the first open facet by less than so many times p h/E, see (10.8).
   constexpr double smooth_gap = 4;
-  const double diameter = mesh::diameter(*d.mesh);
+  const double diameter = d.diameter;
   const auto size = size_around(d, side);
   const auto x = device_read(u);
   Kokkos::parallel_for(

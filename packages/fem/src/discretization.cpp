@@ -156,8 +156,9 @@ Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh, const Kinemati
   Discretization d;
   d.mesh = std::move(mesh);
   d.kinematics = kinematics;
+  d.diameter = mesh::diameter(*d.mesh);
   if (d.axisymmetric()) {
-    d.on_axis = axis_rounding * mesh::diameter(*d.mesh);
+    d.on_axis = axis_rounding * d.diameter;
     require_radii(*d.mesh, d.on_axis);
   }
   if (!d.mesh->element.mixed()) d.reference = tabulate(d.mesh->element, kinematics);
@@ -293,7 +294,7 @@ RCP<MultiVector> rigid_body_modes(const Discretization &d)
   coords->meanValue(Teuchos::ArrayView<double>(mean.data(), dim));
   Kokkos::Array<double, 3> centre{{mean[0], mean[1], mean[2]}};
   // MueLu throws where a mode is 0 on an aggregate, which may be one node, and on that node's rank alone.
-  const double step = mesh::diameter(*d.mesh) / 1024;
+  const double step = d.diameter / 1024;
   while (rests_at_a_node(*coords, centre))
     for (int c = 0; c < dim; ++c) centre[c] += step / (1 + c);
   const auto result = rcp(new MultiVector(d.owned_dofs, dim == 2 ? 3 : 6)); // zero

@@ -42,7 +42,7 @@ NearestMotion nearest_motion(const Discretization &d, const DeviceView<char *> &
   const auto coords = d.mesh->coords;
   Kokkos::Array<double, 3> centre{};
   node_coordinates(d)->meanValue(Teuchos::ArrayView<double>(centre.data(), dim));
-  const double radius = mesh::diameter(*d.mesh);
+  const double radius = d.diameter;
   result.centre = centre;
   result.radius = radius;
   // Products of the six modes with each other and with u.

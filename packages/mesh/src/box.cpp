@@ -150,14 +150,15 @@ void fill_cells(const Numbering &n, const Grid &grid, const Element &element, co
     for (int a = 0; a < nodes; ++a)
       for (int d = 0; d < dim; ++d) place_host(part, a, d) = parts[part][a][d];
   const auto place = to_device(place_host);
+  const bool images = places.extent(0) > 0;
   Kokkos::parallel_for(
       "rpc::mesh::box_cells", device_range(static_cast<LO>(cells.extent(0))), KOKKOS_LAMBDA(const LO cell) {
         const Index corner = n.cell_at(cell / num_parts);
         for (int a = 0; a < nodes; ++a) {
           Index node{};
           for (int d = 0; d < dim; ++d) node[d] = order[d] * corner[d] + place(cell % num_parts, a, d);
-          cells(cell, a) = n.lid_of(grid.node_of(node));
-          if (places.extent(0) > 0) places(cell, a) = n.lid_of(node);
+          cells(cell, a) = n.lid_of(images ? grid.node_of(node) : node);
+          if (images) places(cell, a) = n.lid_of(node);
         }
       });
 }

@@ -340,8 +340,8 @@ contact::OptimalityResiduals judge(const Problem &problem, const Step &step, con
 void tell_want_of_friction(UzawaResult &uzawa, const Problem &problem, const Vector &u)
 {
   if (interrupted(problem.discretization().mesh->comm())) return;
-  const bool moves = uzawa.friction_unsettled || !(uzawa.residuals.worst() < 1) ||
-                     u.normInf() > mesh::diameter(*problem.discretization().mesh);
+  const bool moves =
+      uzawa.friction_unsettled || !(uzawa.residuals.worst() < 1) || u.normInf() > problem.discretization().diameter;
   if (moves) uzawa.reason = std::to_string(uzawa.iterations) + " Uzawa iterations were not enough";
   uzawa.reason += "; " + because(causes::want_of_friction);
   if (moves) uzawa.reason_has_residuals = false;

@@ -41,6 +41,7 @@ struct CongruentCells {
 struct Discretization {
   std::shared_ptr<const mesh::Mesh> mesh;
   Kinematics kinematics = Kinematics::plane_strain;
+  double diameter = 0;        ///< diagonal of the body's bounding box [m]
   double on_axis = 0;         ///< of an axisymmetric body: nodes with r up to this lie on the axis, where u_r = 0 [m]
   ReferenceElement reference; ///< of mixed elements none: their stiffness is that of Q2
   RCP<const Map> owned_dofs;  ///< rows; columns are the unknowns of the overlap nodes
