@@ -167,7 +167,7 @@ std::optional<analysis::MadeMesh> next_mesh(MeshPlanner &planner, const Solution
   const RCP<const Comm> comm = s.discretization.mesh->owned_nodes->getComm();
   forecast.told_before = forecast.misses_contact ? 0 : forecast.last_dofs;
   const ErrorEstimate estimate = guide(s);
-  forecast.misses_contact = estimate.misses_contact();
+  forecast.misses_contact = estimate.falls_at_once();
   auto options = planner.next(s.discretization, estimate, s.energy_norm_squared + estimate.unseen(), forecast, reason);
   if (options) {
     forecast.seconds = seconds_for(forecast, per_dof);

@@ -129,7 +129,7 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
   const double relative = eta / std::sqrt(energy_norm_squared);
   goal_ = goal(eta, target, relative > headway_rules.falls * least_, mesh.dim());
   // Where unseen contact is most of the error, errors elsewhere are those of another solution: no cell grows for them.
-  if (estimate.misses_contact()) goal_.growth = 1;
+  if (estimate.falls_at_once()) goal_.growth = 1;
   const double dofs = dofs_of(mesh), cells = cells_of(mesh), ratio = made_per_planned(cells, mesh.dim());
   if (!halved_) ratio_unless_halved_ = ratio;
   if (relative < least_) {

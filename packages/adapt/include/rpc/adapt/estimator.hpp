@@ -72,7 +72,9 @@ struct ErrorEstimate {
   /// Of contact that no contact point sees, twice the energy that it takes [J], in 2D per m.                      (10.4b)
   double unseen() const { return part(unseen_contact); }
   double hidden = 0; ///< of that, contact beside which no node bears: see contact::BetweenNodes [J], in 2D per m
-  /// Whether that is most of the estimate: errors elsewhere are those of another solution.
+  /// Whether unseen contact is most of the estimate, which the next mesh sees: it falls at once, and not as the order of the elements.
+  bool falls_at_once() const { return unseen() > 0.5 * total(); }
+  /// Whether hidden contact is: errors elsewhere are those of another solution.
   bool misses_contact() const { return hidden > 0.5 * total(); }
   static constexpr const char *unseen_contact = "unseen_contact";
 };
