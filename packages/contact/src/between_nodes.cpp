@@ -74,10 +74,12 @@ struct SideSamples {
   bool axisymmetric;
 
   /// @param modulus  lambda + 2 mu of the cell [Pa]   @param least  what is no more than rounding [m]   @param at  the samples, if they are known
-  Found look(const LO f, const double modulus, const double least, const SampledFacet *const at = nullptr) const
+  /// @param counts   whether what lies in the foundation may be unseen: else its energies are left out
+  Found look(const LO f, const double modulus, const double least, const SampledFacet *const at = nullptr,
+             const bool counts = true) const
   {
     Found found;
-    const double most_allowed = rows.most_allowed(f);
+    const FacetNodes nodes = facet_nodes(rows, f);
     struct Inside {
       double depth, hidden, dent;
       Point place;
@@ -94,7 +96,7 @@ struct SideSamples {
         radii += axisymmetric ? place_at(rows, f, shape)[0] : 1;
         continue;
       }
-      const FacetSample sample = at ? at->points[n] : sample_at(rows, f, shape, options, most_allowed);
+      const FacetSample sample = at ? at->points[n] : sample_at(nodes, shape, options);
       const double depth = at ? at->penetration[n] - sample.allowed : excess_at(sample, options);
       radii += axisymmetric ? sample.place[0] : 1;
       if (depth > found.largest_excess) found.largest_excess = depth;
@@ -109,11 +111,13 @@ struct SideSamples {
     if (inside.empty()) return found;
     const double share = double(inside.size()) / static_cast<double>(lattice.points.size());
     found.width = rows.size(f) * std::pow(share, 1. / (rows.dim - 1));
+    if (!counts) return found;
     for (const auto &[depth, hidden, dent, place] : inside) {
       const double weight = axisymmetric ? place[0] : 1;
       found.squared += weight * pushed_out(options, depth, modulus, found.width, place);
       found.hidden += weight * pushed_out(options, hidden, modulus, found.width, place);
-      found.pressed_in = std::max(found.pressed_in, pressed_in(options, place, dent, depth, rows.size(f) / modulus));
+      if (!at)
+        found.pressed_in = std::max(found.pressed_in, pressed_in(options, place, dent, depth, rows.size(f) / modulus));
     }
     for (double *const sum : {&found.squared, &found.hidden}) *sum *= radii > 0 ? rows.area(f) / radii : 0;
     return found;
@@ -291,10 +295,14 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     const double lambda = lame(block(rows.cell(f)), 0), mu = lame(block(rows.cell(f)), 1), modulus = lambda + 2 * mu;
     const bool touches = !rows.bears_nothing(f), partly = rows.is_partly_open(f);
     const SideSamples &densely = !touches ? samples : partly ? edges : touching;
-    if (touches) reading.sample(f, densely.lattice, sampled);
+    if (touches) {
+      reading.sample(f, densely.lattice, sampled);
+      off_interpolant[n] = off_interpolants(sampled);
+    }
     Found found;
     if (possible[n] >= 0) {
-      found = densely.look(f, modulus, least, touches ? &sampled : nullptr);
+      found = touches ? densely.look(f, modulus, least, &sampled, off_interpolant[n].hides(0))
+                      : densely.look(f, modulus, least);
       if (!touches && searches && !(found.deepest > 0))
         if (const auto hidden = find_hidden_part(rows, f, shape, options, triangle, least, most_searched))
           found = found_in(*hidden, options, modulus, rows.most_allowed(f), rows.size(f));
@@ -314,8 +322,7 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     } else if (touches && detail == nullptr) {
       mine.interpolation_work += reading.work_of_interpolation(f, sampled);
     }
-    if (!touches) mine.misread_penetration = std::max(mine.misread_penetration, found.pressed_in);
-    if (touches) off_interpolant[n] = off_interpolants(sampled);
+    mine.misread_penetration = std::max(mine.misread_penetration, found.pressed_in);
     if (touches && !off_interpolant[n].hides(0)) smooth = std::max(smooth, off_interpolant[n].whole);
     squared[f] = found.squared;
     hidden[f] = found.hidden;

@@ -24,7 +24,7 @@ EvaluateShape shape_of(const mesh::Element &facet)
         shape.evaluate(X, N, dN);
         for (int a = 0; a < Shape::nodes; ++a) {
           to.value[a] = N[a];
-          std::copy_n(dN[a], Shape::dim, to.slope[a]);
+          for (int g = 0; g < Shape::dim; ++g) to.slope[g][a] = dN[a][g];
         }
       };
   });
@@ -33,8 +33,8 @@ EvaluateShape shape_of(const mesh::Element &facet)
 
 int parts_with_halves(const mesh::Element &facet, const int parts)
 {
-  const int of_halves = 4 * facet.order;
-  return (parts + of_halves - 1) / of_halves * of_halves;
+  const int of_halves = 2 * facet.order;
+  return std::max((parts + of_halves - 1) / of_halves, 2) * of_halves;
 }
 
 Lattice lattice_of(const mesh::Element &facet, const int parts)
@@ -203,21 +203,31 @@ Point displacement_at(const FacetRows &rows, const LO f, const FacetShape &shape
   return u;
 }
 
-FacetSample sample_at(const FacetRows &rows, const LO f, const FacetShape &shape, const ContactOptions &options,
-                      const double most_allowed)
+FacetNodes facet_nodes(const FacetRows &rows, const LO f)
 {
-  FacetSample sample;
-  Point u{}, tangent[2] = {};
+  FacetNodes nodes{rows.nodes, rows.dim};
+  const double most_allowed = rows.most_allowed(f);
   for (int a = 0; a < rows.nodes; ++a) {
-    const double N = shape.value[a];
     for (int k = 0; k < rows.dim; ++k) {
-      sample.place[k] += N * rows.place(f, a)[k];
-      u[k] += N * rows.displacement(f, a)[k];
-      for (int g = 0; g < rows.dim - 1; ++g) tangent[g][k] += shape.slope[a][g] * rows.place(f, a)[k];
+      nodes.value[k][a] = rows.place(f, a)[k];
+      nodes.value[FacetNodes::displacement + k][a] = rows.displacement(f, a)[k];
     }
     const bool weightless = rows.column(f, a, FacetRows::bearing) < 0;
-    sample.allowed += N * (weightless ? most_allowed : rows.column(f, a, FacetRows::allowed));
+    nodes.value[FacetNodes::allowed][a] = weightless ? most_allowed : rows.column(f, a, FacetRows::allowed);
+    nodes.value[FacetNodes::dent][a] = rows.column(f, a, FacetRows::dent);
   }
+  return nodes;
+}
+
+FacetSample sample_at(const FacetNodes &nodes, const FacetShape &shape, const ContactOptions &options)
+{
+  const auto point = [&](const int of, const double *const weight) {
+    return Point{nodes.sum(of, weight), nodes.sum(of + 1, weight), nodes.dim == 3 ? nodes.sum(of + 2, weight) : 0};
+  };
+  FacetSample sample;
+  sample.place = point(0, shape.value);
+  sample.allowed = nodes.sum(FacetNodes::allowed, shape.value);
+  sample.dent = nodes.sum(FacetNodes::dent, shape.value);
   sample.allowed = std::max(sample.allowed, 0.);
   if (options.normal == Normal::fixed) {
     sample.normal = options.direction;
@@ -226,10 +236,11 @@ FacetSample sample_at(const FacetRows &rows, const LO f, const FacetShape &shape
     sample.has_normal = into.has_value();
     if (into) sample.normal = *into;
   } else {
-    const Point nu = rows.dim == 2 ? Point{tangent[0][1], -tangent[0][0], 0} : cross(tangent[0], tangent[1]);
+    const Point tangent = point(0, shape.slope[0]);
+    const Point nu = nodes.dim == 2 ? Point{tangent[1], -tangent[0], 0} : cross(tangent, point(0, shape.slope[1]));
     sample.normal = scaled(1 / length(nu), nu);
   }
-  sample.along = inner(u, sample.normal);
+  sample.along = inner(point(FacetNodes::displacement, shape.value), sample.normal);
   return sample;
 }
 

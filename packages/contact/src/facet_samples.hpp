@@ -18,7 +18,7 @@ namespace rpc::contact
 /// The shape functions of a facet at one of its points.
 struct FacetShape {
   static constexpr int most_nodes = 9, most_dim = 2;
-  double value[most_nodes], slope[most_nodes][most_dim];
+  double value[most_nodes], slope[most_dim][most_nodes];
   double share = 0; // of the facet that belongs to it, of points of a lattice
 };
 using EvaluateShape = std::function<void(const double *X, FacetShape &)>;
@@ -79,6 +79,7 @@ struct FacetSample {
   Point normal{};         // along which penetration is measured
   double along = 0;       // u_nu [m]
   double allowed = 0;     // [m]
+  double dent = 0;        // [m]
   bool has_normal = true; // else it is at the centre of an obstacle
 };
 
@@ -86,9 +87,22 @@ struct FacetSample {
 Point place_at(const FacetRows &rows, LO f, const FacetShape &shape);
 Point displacement_at(const FacetRows &rows, LO f, const FacetShape &shape);
 
-/// @param most_allowed  of the facet, see FacetRows
-FacetSample sample_at(const FacetRows &rows, LO f, const FacetShape &shape, const ContactOptions &options,
-                      double most_allowed);
+/// What the nodes of a facet have, side by side for its samples: place and displacement [m], and of FacetRows what it allows, and the dent [m].
+struct FacetNodes {
+  static constexpr int displacement = 3, allowed = 6, dent = 7, width = 8;
+  int count = 0, dim = 0; // of the facet's nodes; of the body
+  double value[width][FacetShape::most_nodes] = {};
+
+  /// Of all nodes, with the values or slopes of their shape functions.
+  double sum(const int of, const double *const weight) const
+  {
+    double sum = 0;
+    for (int a = 0; a < count; ++a) sum += weight[a] * value[of][a];
+    return sum;
+  }
+};
+FacetNodes facet_nodes(const FacetRows &rows, LO f);
+FacetSample sample_at(const FacetNodes &nodes, const FacetShape &shape, const ContactOptions &options);
 
 /// e of (3.15) at a sample [m]; minus infinity where the normal misses the obstacle.
 double excess_at(const FacetSample &sample, const ContactOptions &options);

@@ -20,19 +20,16 @@ Foundation in_series(const ContactOptions &options, const Point &x, const double
 
 } // namespace
 
-double GapReading::penetration_at_sample(const LO f, const SampledFacet &at, const std::size_t n) const
-{
-  return at.penetration[n] - rows.interpolated(f, at.lattice->points[n], FacetRows::dent);
-}
-
 void GapReading::sample(const LO f, const Lattice &lattice, SampledFacet &found) const
 {
-  const double most_allowed = rows.most_allowed(f);
+  const FacetNodes nodes = facet_nodes(rows, f);
   found.lattice = &lattice;
   found.points.clear();
   found.penetration.clear();
+  found.points.reserve(lattice.points.size());
+  found.penetration.reserve(lattice.points.size());
   for (const FacetShape &shape : lattice.points) {
-    found.points.push_back(sample_at(rows, f, shape, options, most_allowed));
+    found.points.push_back(sample_at(nodes, shape, options));
     found.penetration.push_back(penetration_at(found.points.back(), options));
   }
 }
@@ -79,7 +76,7 @@ bool GapReading::is_off(const LO f, const SampledFacet &at) const
     most = std::max(most, rows.column(f, a, FacetRows::penetration));
   }
   for (std::size_t n = 0; n < at.lattice->points.size(); ++n) {
-    const double v = penetration_at_sample(f, at, n);
+    const double v = at.beyond_dents(n);
     if (!std::isfinite(v)) return false;
     furthest = std::max(furthest, std::abs(v - rows.interpolated(f, at.lattice->points[n], FacetRows::penetration)));
   }
@@ -91,7 +88,7 @@ double GapReading::work_of_interpolation(const LO f, const SampledFacet &at) con
   double work = 0, weights = 0;
   for (std::size_t n = 0; n < at.lattice->points.size(); ++n) {
     const FacetShape &shape = at.lattice->points[n];
-    const double weight = shape.share * (axisymmetric ? at.points[n].place[0] : 1), v = penetration_at_sample(f, at, n);
+    const double weight = shape.share * (axisymmetric ? at.points[n].place[0] : 1), v = at.beyond_dents(n);
     const double off = rows.interpolated(f, shape, FacetRows::penetration) - v;
     if (!std::isfinite(off)) return 0; // the obstacle is missed
     work += weight * rows.interpolated(f, shape, FacetRows::pressure) * off;
@@ -129,8 +126,8 @@ Misread GapReading::read(const LO f, const double modulus, const double of_surfa
     const FacetShape &shape = at.lattice->points[n];
     const Point &place = at.points[n].place;
     const double weight = shape.share * (axisymmetric ? place[0] : 1);
-    const double dent = rows.interpolated(f, shape, FacetRows::dent);
-    const double v = penetration_at_sample(f, at, n) + layer * rows.interpolated(f, shape, FacetRows::pressure);
+    const double dent = at.points[n].dent;
+    const double v = at.beyond_dents(n) + layer * rows.interpolated(f, shape, FacetRows::pressure);
     if (!std::isfinite(v)) return {};
     const Foundation law = in_series(options, place, dent, layer);
     const double p = pressure_at(v, law);

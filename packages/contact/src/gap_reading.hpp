@@ -20,6 +20,8 @@ struct SampledFacet {
   const Lattice *lattice = nullptr;
   std::vector<FacetSample> points;
   std::vector<double> penetration;
+
+  double beyond_dents(const std::size_t n) const { return penetration[n] - points[n].dent; } // [m]
 };
 
 /// How far the gap is from its interpolants [m], at most.                                                         (3.15a)
@@ -60,8 +62,6 @@ struct GapReading {
 private:
   // Of the range of the gap at the nodes. Between nodes beside a jump it is off by a half or more, on a smooth slope by little.
   static constexpr double off = 0.25;
-  /// Beyond the dents [m].
-  double penetration_at_sample(LO f, const SampledFacet &at, std::size_t n) const;
 };
 
 } // namespace rpc::contact

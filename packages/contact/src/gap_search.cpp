@@ -27,7 +27,7 @@ class Search
 public:
   Search(const FacetRows &rows, const LO f, const EvaluateShape &shape, const ContactOptions &options,
          const bool triangle)
-      : rows_(rows), f_(f), shape_(shape), options_(options), triangle_(triangle), most_allowed_(rows.most_allowed(f))
+      : rows_(rows), f_(f), shape_(shape), options_(options), triangle_(triangle), nodes_(facet_nodes(rows, f))
   {
     measure_curvature();
   }
@@ -71,7 +71,7 @@ private:
   {
     FacetShape shape;
     shape_(X, shape);
-    return sample_at(rows_, f_, shape, options_, most_allowed_);
+    return sample_at(nodes_, shape, options_);
   }
   bool is_inside(const double *const X) const
   {
@@ -158,7 +158,7 @@ private:
   const EvaluateShape &shape_;
   const ContactOptions &options_;
   bool triangle_;
-  double most_allowed_;
+  FacetNodes nodes_;
   double bend_ = 0, bend_of_u_ = 0; // [m]
 };
 
