@@ -33,8 +33,8 @@ EvaluateShape shape_of(const mesh::Element &facet)
 
 int parts_with_halves(const mesh::Element &facet, const int parts)
 {
-  const int of_halves = 2 * facet.order;
-  return std::max((parts + of_halves - 1) / of_halves, 2) * of_halves;
+  const int least = 4 * facet.order, step = facet.dim == 1 ? least : least / 2; // faces have the square of so many points
+  return std::max((parts + step - 1) / step * step, least);
 }
 
 Lattice lattice_of(const mesh::Element &facet, const int parts)
