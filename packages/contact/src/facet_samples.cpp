@@ -33,7 +33,8 @@ EvaluateShape shape_of(const mesh::Element &facet)
 
 int parts_with_halves(const mesh::Element &facet, const int parts)
 {
-  const int least = 4 * facet.order, step = facet.dim == 1 ? least : least / 2; // faces have the square of so many points
+  // Faces have the square of so many points.
+  const int least = 4 * facet.order, step = facet.dim == 1 ? least : least / 2;
   return std::max((parts + step - 1) / step * step, least);
 }
 
