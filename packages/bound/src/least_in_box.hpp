@@ -21,18 +21,18 @@ inline double inner_of(const std::vector<double> &x, const std::vector<double> &
 }
 
 /// The least of a quadratic function x . H x/2 - f . x between bounds: conjugate gradients on the face, with steps that leave it (Dostal, SIAM
-/// J. Optim. 7, 1997). It ends near rounding: a bound changes in proportion to what is left, which would show between one rank and two. What
+/// J. Optim. 7, 1997; steps that are cut off at the bounds by Kruzik et al., Adv. Eng. Softw. 150, 2020). It ends near rounding: a bound changes in proportion to what is left, which would show between one rank and two. What
 /// steps have made of the gradient drifts from it, which shows where H has large eigenvalues beside small ones; then it goes on from the gradient.
 /// @param fit  has apply(x, y), y <- H x; gradient(x, y), y <- H x - f, where that is small accurately; right_side(), f; start(); low() and high();
 /// scale(), which makes about 1 of the diagonal
 template <class Fit>
-std::vector<double> least_in_box(const Fit &fit)
+std::vector<double> least_in_box(Fit &fit)
 {
   // Squares of what may be left of the gradient, over that of f, over what was left at a look, and over the first one; all scaled.
   constexpr double enough = 1e-26, enough_after_look = 1e-10, enough_of_first = 1e-26;
   const std::vector<double> &scale = fit.scale();
   const std::size_t n = scale.size();
-  std::vector<double> x(n), g(n), y(n), Hy(n), free(n), chopped(n), scaled(n), lower(n), upper(n);
+  std::vector<double> x(n), g(n), y(n), Hy(n), free(n), chopped(n), scaled(n), lower(n), upper(n), old_x(n), old_g(n);
   const auto apply = [&](const std::vector<double> &from, std::vector<double> &to) {
     for (std::size_t i = 0; i < n; ++i) scaled[i] = scale[i] * from[i];
     fit.apply(scaled, to);
@@ -42,16 +42,7 @@ std::vector<double> least_in_box(const Fit &fit)
     x[i] = fit.start()[i] / scale[i];
     lower[i] = fit.low()[i] / scale[i];
     upper[i] = fit.high()[i] / scale[i];
-    y[i] = 1 + 0.5 * std::sin(static_cast<double>(i));
   }
-  double norm = 1;
-  for (int k = 0; k < 20; ++k) { // the largest eigenvalue, about
-    apply(y, Hy);
-    norm = std::sqrt(inner_of(Hy, Hy) / inner_of(y, y));
-    const double size = std::sqrt(inner_of(Hy, Hy));
-    for (std::size_t i = 0; i < n; ++i) y[i] = Hy[i] / size;
-  }
-  const double fixed_step = 1 / (1.1 * norm);
   const auto look = [&] {
     for (std::size_t i = 0; i < n; ++i) scaled[i] = scale[i] * x[i];
     fit.gradient(scaled, g);
@@ -113,18 +104,22 @@ std::vector<double> least_in_box(const Fit &fit)
       for (std::size_t i = 0; i < n; ++i) y[i] = free[i] - beta * y[i];
       continue;
     }
+    // The whole step, cut off at the bounds; where the function rises by that, the part of the step that stays within.
     double most = length;
     for (std::size_t i = 0; i < n; ++i) {
       if (y[i] > 0) most = std::min(most, (x[i] - lower[i]) / y[i]);
       if (y[i] < 0) most = std::min(most, (x[i] - upper[i]) / y[i]);
     }
-    for (std::size_t i = 0; i < n; ++i) {
-      x[i] = std::clamp(x[i] - most * y[i], lower[i], upper[i]);
-      g[i] -= most * Hy[i];
-    }
-    for (std::size_t i = 0; i < n; ++i)
-      if (x[i] > lower[i] && x[i] < upper[i]) x[i] = std::clamp(x[i] - fixed_step * g[i], lower[i], upper[i]);
+    old_x = x;
+    old_g = g;
+    for (std::size_t i = 0; i < n; ++i) x[i] = std::clamp(x[i] - length * y[i], lower[i], upper[i]);
     look();
+    double rise = 0;
+    for (std::size_t i = 0; i < n; ++i) rise += (x[i] - old_x[i]) * (g[i] + old_g[i]);
+    for (std::size_t i = 0; i < n && rise > 0; ++i) {
+      x[i] = std::clamp(old_x[i] - most * y[i], lower[i], upper[i]);
+      g[i] = old_g[i] - most * Hy[i];
+    }
     restart = true;
   }
   for (std::size_t i = 0; i < n; ++i) x[i] = std::clamp(x[i] * scale[i], fit.low()[i], fit.high()[i]);

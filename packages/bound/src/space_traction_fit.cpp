@@ -33,6 +33,10 @@ public:
     for (const double a : c.area) area += a;
     size_ = std::sqrt(2 * area / static_cast<double>(c.area.size()));
     list_hats();
+    force_.resize(c.place.size());
+    weighted_.resize(c.place.size());
+    for (int k = 0; k < w.components && !plain(); ++k)
+      for (auto *const values : {&t_, &h_}) (*values)[k].resize(unknowns_);
     const std::size_t blocks = w.components == 2 || w.rise > 0 ? 2 : 1;
     for (auto *const of_unknowns : {&f_, &scale_, &start_, &low_bound_, &high_bound_})
       of_unknowns->assign(blocks * unknowns_, 0.);
@@ -48,17 +52,17 @@ public:
   }
 
   /// y <- H x.
-  void apply(const std::vector<double> &x, std::vector<double> &y) const { apply_or_compare(x, false, y); }
+  void apply(const std::vector<double> &x, std::vector<double> &y) { apply_or_compare(x, false, y); }
   /// y <- H x - f. Forces of the whole side weigh much: their difference is taken before.
-  void gradient(const std::vector<double> &x, std::vector<double> &y) const { apply_or_compare(x, true, y); }
-  AlongSide tractions_of(const std::vector<double> &x) const
+  void gradient(const std::vector<double> &x, std::vector<double> &y) { apply_or_compare(x, true, y); }
+  AlongSide tractions_of(const std::vector<double> &x)
   {
-    const Values t = expanded(x);
+    expand(x);
     AlongSide all;
     for (int k = 0; k < w_.components; ++k)
       for (std::size_t e = 0; e < c_.facet.size(); ++e) {
         all[k].emplace_back();
-        std::copy_n(t[k].begin() + n_ * e, n_, all[k].back().begin());
+        std::copy_n((plain() ? x : t_[k]).begin() + n_ * e, n_, all[k].back().begin());
       }
     return all;
   }
@@ -73,66 +77,67 @@ private:
   /// Of one level: (points) the first of four hats, and what they are there; 0 where nothing can act.
   struct Hats {
     int intervals;
+    bool of_points = true; // whether sums over points make them; else those of the level before
     std::vector<std::size_t> first;
     std::vector<std::array<double, 4>> weight;
+    std::vector<double> hat; // work space
   };
 
   bool hardens() const { return w_.rise > 0; }
-  void apply_or_compare(const std::vector<double> &x, const bool compare, std::vector<double> &y) const
+  /// Whether the unknowns are the coefficients of the traction.
+  bool plain() const { return w_.components == 1 && !hardens(); }
+  void apply_or_compare(const std::vector<double> &x, const bool compare, std::vector<double> &y)
   {
     n_ == 3 ? apply_of<3>(x, compare, y) : apply_of<6>(x, compare, y);
   }
   /// @tparam N  coefficients of a facet
   template <int N>
-  void apply_of(const std::vector<double> &x, const bool compare, std::vector<double> &y) const
+  void apply_of(const std::vector<double> &x, const bool compare, std::vector<double> &y)
   {
-    const Values t = expanded(x);
-    Values h;
+    expand(x);
+    y.resize(x.size());
     for (int k = 0; k < w_.components; ++k) {
-      std::vector<double> force(w_.force[k].size(), 0.);
-      for (std::size_t i = 0; compare && i < force.size(); ++i) force[i] = w_.free[i] ? -w_.force[k][i] : 0;
+      const double *const t = plain() ? x.data() : t_[k].data();
+      double *const h = plain() ? y.data() : h_[k].data();
+      for (std::size_t i = 0; i < force_.size(); ++i) force_[i] = compare ? -w_.force[k][i] : 0;
       for (std::size_t e = 0; e < c_.facet.size(); ++e)
         for (int a = 0; a < N; ++a) {
           double sum = 0;
-          for (int j = 0; j < N; ++j) sum += forces_[a][j] * t[k][N * e + j];
-          force[c_.point[e][a]] += w_.free[c_.point[e][a]] ? c_.area[e] * sum : 0;
+          for (int j = 0; j < N; ++j) sum += forces_[a][j] * t[N * e + j];
+          force_[c_.point[e][a]] += c_.area[e] * sum;
         }
-      add_weighted(force);
-      h[k].resize(unknowns_);
+      for (std::size_t i = 0; i < force_.size(); ++i)
+        if (!w_.free[i]) force_[i] = 0;
+      add_weighted();
       for (std::size_t e = 0; e < c_.facet.size(); ++e) {
         const double of_mass = mass_weight(e), of_force = c_.area[e] / (c_.modulus * size_);
         for (int i = 0; i < N; ++i) {
           double near = 0, mass = 0, sum = 0;
           for (int a = 0; a < N; ++a) {
-            const int point = c_.point[e][a];
-            sum += forces_[a][i] * (w_.free[point] ? force[point] : 0);
-            mass += mass_[i][a] * t[k][N * e + a];
+            sum += forces_[a][i] * weighted_[c_.point[e][a]];
+            mass += mass_[i][a] * t[N * e + a];
             if (compare) near += mass_[i][a] * (near_weight(e) * w_.near[k][e][a] + c_.area[e] * w_.depth[k][e][a]);
           }
-          h[k][N * e + i] = of_force * sum + of_mass * mass - near;
+          h[N * e + i] = of_force * sum + of_mass * mass - near;
         }
       }
     }
-    y.assign(x.size(), 0.);
-    reduce(h, y);
+    if (!plain()) reduce(h_, y);
     for (std::size_t q = 0; hardens() && q < unknowns_; ++q)
       y[unknowns_ + q] += beyond_weight(q / N) * x[unknowns_ + q];
   }
-  /// Tractions from the unknowns.
-  Values expanded(const std::vector<double> &x) const
+  /// t_ <- tractions from the unknowns.
+  void expand(const std::vector<double> &x)
   {
-    Values t;
-    for (int k = 0; k < w_.components; ++k) t[k].resize(unknowns_);
-    for (std::size_t q = 0; q < unknowns_; ++q) {
+    for (std::size_t q = 0; !plain() && q < unknowns_; ++q) {
       if (w_.components == 1) {
-        t[0][q] = hardens() ? x[q] + x[unknowns_ + q] : x[q];
+        t_[0][q] = x[q] + x[unknowns_ + q];
         continue;
       }
       const auto &d = w_.toward[q / n_][q % n_];
-      t[0][q] = d[0] * x[q] - d[1] * x[unknowns_ + q];
-      t[1][q] = d[1] * x[q] + d[0] * x[unknowns_ + q];
+      t_[0][q] = d[0] * x[q] - d[1] * x[unknowns_ + q];
+      t_[1][q] = d[1] * x[q] + d[0] * x[unknowns_ + q];
     }
-    return t;
   }
   /// The transpose.
   void reduce(const Values &t, std::vector<double> &x) const
@@ -199,8 +204,13 @@ private:
     for (int d = 0; d < 2; ++d) span[d] = high[d] - low[d];
     if (!(span[0] > 0 && span[1] > 0)) return;
     for (int n = static_cast<int>(std::sqrt(count)) / 2; n >= 1; n /= 2) {
-      Hats level{n, std::vector<std::size_t>(c_.place.size()), std::vector<std::array<double, 4>>(c_.place.size())};
-      for (std::size_t i = 0; i < c_.place.size(); ++i) {
+      Hats level{n, levels_.empty() || levels_.back().intervals != 2 * n, {}, {}, {}};
+      level.hat.resize(static_cast<std::size_t>(n + 1) * (n + 1));
+      if (level.of_points) {
+        level.first.resize(c_.place.size());
+        level.weight.resize(c_.place.size());
+      }
+      for (std::size_t i = 0; level.of_points && i < c_.place.size(); ++i) {
         if (!w_.free[i]) continue;
         int k[2];
         double x[2];
@@ -215,21 +225,49 @@ private:
       levels_.push_back(level);
     }
   }
-  /// force <- S force, with S the sum over all levels of the products with hats, and the nodes themselves.
-  void add_weighted(std::vector<double> &force) const
+  /// Calls with the place of each hat of a level, that of a hat which it holds of twice as many intervals, and how much of that.
+  template <class Visit>
+  static void for_finer(const int intervals, const Visit &visit)
+  {
+    const int n = 2 * intervals + 1;
+    for (int k = 0; k <= intervals; ++k)
+      for (int l = 0; l <= intervals; ++l)
+        for (int i = std::max(0, 2 * k - 1); i < std::min(n, 2 * k + 2); ++i)
+          for (int j = std::max(0, 2 * l - 1); j < std::min(n, 2 * l + 2); ++j)
+            visit(k * (intervals + 1) + l, i * n + j, (i == 2 * k ? 1 : 0.5) * (j == 2 * l ? 1 : 0.5));
+  }
+  /// weighted_ <- S force_, with S the sum over all levels of the products with hats, and the nodes themselves. Of twice as many intervals as the
+  /// next level has, hats of that level are sums of those of this one.
+  void add_weighted()
   {
     constexpr double of_all = 100; // of the force and moments of the whole side, squared
-    std::vector<double> sum(force), hat;
-    for (const Hats &level : levels_) {
-      const std::size_t n = level.intervals + 1, step[4] = {0, 1, n, n + 1};
-      hat.assign(n * n, 0.);
-      for (std::size_t i = 0; i < force.size(); ++i)
-        for (int k = 0; k < 4; ++k) hat[level.first[i] + step[k]] += level.weight[i][k] * force[i];
-      for (double &of_hat : hat) of_hat *= level.intervals == 1 ? of_all : 1;
-      for (std::size_t i = 0; i < force.size(); ++i)
-        for (int k = 0; k < 4; ++k) sum[i] += level.weight[i][k] * hat[level.first[i] + step[k]];
+    weighted_ = force_;
+    for (std::size_t l = 0; l < levels_.size(); ++l) {
+      Hats &level = levels_[l];
+      if (level.of_points) {
+        const std::size_t n = level.intervals + 1, step[4] = {0, 1, n, n + 1};
+        level.hat.assign(level.hat.size(), 0.);
+        for (std::size_t i = 0; i < force_.size(); ++i)
+          for (int k = 0; k < 4; ++k) level.hat[level.first[i] + step[k]] += level.weight[i][k] * force_[i];
+        continue;
+      }
+      level.hat.assign(level.hat.size(), 0.);
+      const std::vector<double> &finer = levels_[l - 1].hat;
+      for_finer(level.intervals,
+                [&](const int at, const int fine, const double part) { level.hat[at] += part * finer[fine]; });
     }
-    force = sum;
+    for (std::size_t l = levels_.size(); l-- > 0;) {
+      Hats &level = levels_[l];
+      for (double &of_hat : level.hat) of_hat *= level.intervals == 1 ? of_all : 1;
+      if (l + 1 < levels_.size() && !levels_[l + 1].of_points)
+        for_finer(levels_[l + 1].intervals, [&](const int at, const int fine, const double part) {
+          level.hat[fine] += part * levels_[l + 1].hat[at];
+        });
+      if (!level.of_points) continue;
+      const std::size_t n = level.intervals + 1, step[4] = {0, 1, n, n + 1};
+      for (std::size_t i = 0; i < force_.size(); ++i)
+        for (int k = 0; k < 4; ++k) weighted_[i] += level.weight[i][k] * level.hat[level.first[i] + step[k]];
+    }
   }
 
   const SpaceContact &c_;
@@ -240,6 +278,8 @@ private:
       mass_{};      // means of products of shape functions and Bernstein polynomials, and of these
   double size_ = 0; // of facets [m]
   std::vector<Hats> levels_;
+  Values t_, h_;                         // work space where unknowns are no coefficients of the traction
+  std::vector<double> force_, weighted_; // (points) work space
   std::vector<double> f_, scale_, start_, low_bound_, high_bound_;
 };
 
@@ -247,7 +287,7 @@ private:
 
 AlongSide fitted_in_space(const SpaceContact &c, const WantedInSpace &wanted)
 {
-  const FitInSpace fit(c, wanted);
+  FitInSpace fit(c, wanted);
   return fit.tractions_of(least_in_box(fit));
 }
 

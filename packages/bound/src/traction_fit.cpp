@@ -233,7 +233,7 @@ private:
 
 std::vector<OfFacet> fitted_traction(const ContactFacets &c, const WantedTraction &wanted)
 {
-  const Fit fit(c, wanted);
+  Fit fit(c, wanted);
   const std::vector<double> x = least_in_box(fit);
   std::vector<OfFacet> p(c.facet.size());
   for (std::size_t e = 0; e < p.size(); ++e)

@@ -178,6 +178,66 @@ TEST(FittedPressureInSpace, IsTheOneThatTheForcesComeFromWhereThatIsLinear)
     for (int v = 0; v < 3; ++v) EXPECT_NEAR(p[v], 7, 1e-3);
 }
 
+/// The derivative of (13.4) by the coefficients of a pressure on square(), from sums over all hats and all points.
+std::vector<OfTriangle> derivative_of_fit(const SpaceContact &c, const std::vector<OfTriangle> &p,
+                                          const std::vector<OfTriangle> &v)
+{
+  const auto mean = [](const int i, const int j) { return i == j ? 1. / 6 : 1. / 12; };
+  const std::size_t points = c.place.size();
+  std::vector<double> off(points);
+  for (std::size_t i = 0; i < points; ++i) off[i] = -c.force[i];
+  for (std::size_t e = 0; e < p.size(); ++e)
+    for (int a = 0; a < 3; ++a)
+      for (int j = 0; j < 3; ++j) off[c.point[e][a]] += c.area[e] * mean(a, j) * p[e][j];
+  const double side = c.place.back()[0];
+  std::vector<double> weighted(off);
+  for (int n = static_cast<int>(std::sqrt(points)) / 2; n >= 1; n /= 2)
+    for (int k = 0; k <= n; ++k)
+      for (int l = 0; l <= n; ++l) {
+        const auto hat = [&](const std::array<double, 2> &x) {
+          return std::max(0., 1 - std::abs(n * x[0] / side - k)) * std::max(0., 1 - std::abs(n * x[1] / side - l));
+        };
+        double sum = 0;
+        for (std::size_t i = 0; i < points; ++i) sum += hat(c.place[i]) * off[i];
+        for (std::size_t i = 0; i < points; ++i) weighted[i] += (n == 1 ? 100 : 1) * hat(c.place[i]) * sum;
+      }
+  std::vector<OfTriangle> g(p.size());
+  for (std::size_t e = 0; e < p.size(); ++e)
+    for (int j = 0; j < 3; ++j)
+      for (int a = 0; a < 3; ++a)
+        g[e][j] += c.area[e] * mean(a, j) *
+                   ((weighted[c.point[e][a]] + 0.1 * c.area[e] * (p[e][a] - c.pressure[e][a])) / c.modulus - v[e][a]);
+  return g;
+}
+
+TEST(FittedPressureInSpace, IsTheLeastOfItsFunctionBetweenItsBounds)
+{
+  for (const int n : {8, 10}) { // hats of 4, 2, 1 intervals, each of them those of the level before; of 5, 2, 1
+    const double limit = 2;
+    const SpaceContact c = square(n, limit, [&](const double x, const double y) {
+      return std::clamp(3 * std::sin(9 * x / n) * std::cos(4 * y / n) + 1, 0., limit);
+    });
+    std::vector<OfTriangle> v;
+    for (const auto &point : c.point) {
+      v.emplace_back();
+      for (int a = 0; a < 3; ++a) v.back()[a] = 1e-3 * std::sin(7 * c.place[point[a]][0] + 5 * c.place[point[a]][1]);
+    }
+    const std::vector<OfTriangle> p = fitted_pressure(c, v), g = derivative_of_fit(c, p, v),
+                                  first = derivative_of_fit(c, c.pressure, v);
+    double most = 0;
+    for (const OfTriangle &of : first)
+      for (const double x : of) most = std::max(most, std::abs(x));
+    int low = 0, high = 0, between = 0;
+    for (std::size_t e = 0; e < p.size(); ++e)
+      for (int j = 0; j < 3; ++j) {
+        (p[e][j] <= 0 ? low : (p[e][j] >= limit ? high : between)) += 1;
+        EXPECT_GE(g[e][j], p[e][j] < limit ? -1e-10 * most : -inf);
+        EXPECT_LE(g[e][j], p[e][j] > 0 ? 1e-10 * most : inf);
+      }
+    EXPECT_GT(std::min({low, high, between}), n);
+  }
+}
+
 TEST(FittedPressureInSpace, KeepsToTheYieldStressAndNearToTheForces)
 {
   const SpaceContact c =
