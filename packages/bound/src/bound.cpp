@@ -180,6 +180,7 @@ Bounded<ContactFacets> bounded_in_plane(const analysis::Problem &problem, const 
 
   const BoundaryTractions all = with_contact(boundary.tractions, boundary.sides, contact.tractions);
   bounded.u = u;
+  bounded.squared = strain.upper;
   bounded.works = works_of(problem, in, boundary.tractions, all, squared);
   const Solved galerkin = timed_galerkin_solution(problem, s, options, in, all, bound);
   if (!bound.missing.empty()) return bounded;

@@ -48,7 +48,8 @@ HostView<double *> moved_out(const analysis::Problem &problem, const analysis::M
   for (const Side &side : sides) move_out(side, *d.mesh, moved);
   Vector way(*vector_of(moved, d.owned_dofs), Teuchos::Copy);
   way.update(-1, *s.u, 1);
-  bound.moved = std::sqrt(std::max(0., fem::internal_work(d, model.materials, way).energy_norm_squared));
+  if (way.norm2() > 0)
+    bound.moved = std::sqrt(std::max(0., fem::internal_work(d, model.materials, way).energy_norm_squared));
   return moved;
 }
 

@@ -27,6 +27,7 @@ struct Bounded {
   std::vector<Side> sides; ///< of contact
   Works works;             ///< of_loads also where there is no bound
   RCP<const Vector> u;     ///< (owned dofs) u^
+  double squared = 0;      ///< |u^|^2 [J]
   double rho = 0;          ///< of (13.13) [J^(1/2)], in 2D per m
 };
 

@@ -36,17 +36,24 @@ inline double energy_norm(const Works &works, const Vector &w)
   return std::sqrt(std::max(0., works.squared(w).upper));
 }
 
-/// Bounds of a(u, w), by norms of sums of alike size.
-inline Squared energy_product(const Works &works, const Vector &u, const Vector &w)
+/// A displacement w beside u^.
+struct Beside {
+  Squared product; // bounds of a(u^, w)
+  double norm;     // |w| [J^(1/2)]
+};
+/// By norms of sums of alike size.
+template <class Side>
+Beside beside_solution(const Bounded<Side> &b, const Vector &w)
 {
-  const double of_u = works.squared(u).upper, of_w = works.squared(w).upper;
-  if (of_u == 0 || of_w == 0) return {};
-  const double scale = std::sqrt(of_u / of_w);
-  Vector sum(u, Teuchos::Copy), difference(u, Teuchos::Copy);
+  const double of_w = b.works.squared(w).upper;
+  const Beside found{{}, std::sqrt(std::max(0., of_w))};
+  if (b.squared == 0 || of_w == 0) return found;
+  const double scale = std::sqrt(b.squared / of_w);
+  Vector sum(*b.u, Teuchos::Copy), difference(*b.u, Teuchos::Copy);
   sum.update(scale, w, 1);
   difference.update(-scale, w, 1);
-  const Squared more = works.squared(sum), less = works.squared(difference);
-  return {(more.lower - less.upper) / (4 * scale), (more.upper - less.lower) / (4 * scale)};
+  const Squared more = b.works.squared(sum), less = b.works.squared(difference);
+  return {{(more.lower - less.upper) / (4 * scale), (more.upper - less.lower) / (4 * scale)}, found.norm};
 }
 
 /// What the integral is, of the exact pressure over a part of a contact side.                                                   doc/bounds.md (13.14), (13.15)
@@ -56,13 +63,17 @@ ForceBound force_bound(const Bounded<Side> &b, const SidePress &press)
   ForceBound force;
   force.missing = press.missing;
   if (!press.missing.empty()) return force;
-  const auto work_of_pressure = [&](const Vector &w, const double sign) { // its end to that side
-    const Squared product = energy_product(b.works, *b.u, w);
-    const double of_work = b.works.of_loads(w) - b.works.of_all(w) / 2;
-    return of_work - (sign > 0 ? product.lower : product.upper) / 2 + sign * b.rho * energy_norm(b.works, w);
+  const auto work_of_pressure = [&](const Vector &w) {
+    const Beside of = beside_solution(b, w);
+    const double of_work = b.works.of_loads(w) - b.works.of_all(w) / 2, room = b.rho * of.norm;
+    return Squared(of_work - of.product.upper / 2 - room, of_work - of.product.lower / 2 + room);
   };
-  if (!press.below.is_null()) force.lower = std::max(0., work_of_pressure(*press.below, -1) - press.counted_twice);
-  force.upper = std::min(press.most, work_of_pressure(*press.above, 1) + press.missed);
+  const Squared above = work_of_pressure(*press.above);
+  if (!press.below.is_null()) {
+    const Squared below = press.below == press.above ? above : work_of_pressure(*press.below);
+    force.lower = std::max(0., below.lower - press.counted_twice);
+  }
+  force.upper = std::min(press.most, above.upper + press.missed);
   return force;
 }
 
@@ -127,12 +138,12 @@ GoalBound displacement_goal(const SolvedStep &in, const Bounded<Side> &b, const 
   if (!bound.missing.empty()) return bound;
   Vector rest(*z.u, Teuchos::Copy);
   rest.update(-1, *w.u, 1);
-  const Squared of_w = energy_product(b.works, *b.u, *w.u), of_rest = energy_product(b.works, *b.u, rest);
+  const Squared of_w = beside_solution(b, *w.u).product;
+  const Beside of_rest = beside_solution(b, rest);
   const double of_work = b.works.of_loads(*w.u) + b.works.of_all(rest) / 2,
-               room = b.rho * energy_norm(b.works, rest) +
-                      2 * std::sqrt(b.bound.steps.back() * of_dual.bound.steps.back());
-  bound.lower += of_work - of_w.upper - of_rest.upper / 2 - room;
-  bound.upper += of_work - of_w.lower - of_rest.lower / 2 + room;
+               room = b.rho * of_rest.norm + 2 * std::sqrt(b.bound.steps.back() * of_dual.bound.steps.back());
+  bound.lower += of_work - of_w.upper - of_rest.product.upper / 2 - room;
+  bound.upper += of_work - of_w.lower - of_rest.product.lower / 2 + room;
   return bound;
 }
 

@@ -103,6 +103,7 @@ Bounded<SpaceContact> bounded_hexahedra(const analysis::Problem &problem, const 
   const BoundaryTractions all = with_contact(in, boundary, contact.tractions);
   in.shift = shift_of_loads(in, all);
   bounded.u = u;
+  bounded.squared = 2 * work.energy;
   bounded.works = works_of_hexahedra(of_run, in, boundary.tractions, all);
   Solved galerkin = timed_galerkin_solution(problem, s, options, in, all, bound);
   if (!bound.missing.empty()) return bounded;

@@ -79,6 +79,7 @@ Bounded<SpaceContact> bounded_in_space(const analysis::Problem &problem, const a
 
   const BoundaryTractions all = with_contact(in, boundary, contact.tractions);
   bounded.u = u;
+  bounded.squared = strain;
   bounded.works = works_of(problem, in, boundary.tractions, all, squared_by_elements(problem));
   Solved galerkin = timed_galerkin_solution(problem, s, options, in, all, bound);
   if (!bound.missing.empty()) return bounded;
