@@ -21,8 +21,9 @@ inline double inner_of(const std::vector<double> &x, const std::vector<double> &
 }
 
 /// The least of a quadratic function x . H x/2 - f . x between bounds: conjugate gradients on the face, with steps that leave it (Dostal, SIAM
-/// J. Optim. 7, 1997; steps that are cut off at the bounds by Kruzik et al., Adv. Eng. Softw. 150, 2020). It ends near rounding: a bound changes in proportion to what is left, which would show between one rank and two. What
-/// steps have made of the gradient drifts from it, which shows where H has large eigenvalues beside small ones; then it goes on from the gradient.
+/// J. Optim. 7, 1997), which are cut off at the bounds (Kruzik et al., Adv. Eng. Softw. 2020). It ends near rounding: a bound changes in proportion
+/// to what is left, which would show between one rank and two. What steps have made of the gradient drifts from it, which shows where H has large
+/// eigenvalues beside small ones; then it goes on from the gradient.
 /// @param fit  has apply(x, y), y <- H x; gradient(x, y), y <- H x - f, where that is small accurately; right_side(), f; start(); low() and high();
 /// scale(), which makes about 1 of the diagonal
 template <class Fit>

@@ -12,11 +12,13 @@
 namespace rpc::bound
 {
 
-SlotExchange::SlotExchange(const mesh::Mesh &mesh, const HostView<LO **> &node, const std::vector<int> &node_of)
+SlotExchange::SlotExchange(const mesh::Mesh &mesh, const DeviceView<LO **> &node_of_facet,
+                           const std::vector<int> &node_of)
     : comm_(mesh.owned_nodes->getComm())
 {
   const int ranks = comm_->getSize(), slots = static_cast<int>(node_of.size());
   if (ranks == 1) return;
+  const auto node = to_host(node_of_facet);
   constexpr int per_key = 4; // vertices of the facet, slot
   using Key = std::array<GO, per_key>;
   const LO facets = static_cast<LO>(node.extent(0));
@@ -75,7 +77,7 @@ SlotExchange::SlotExchange(const mesh::Mesh &mesh, const HostView<LO **> &node, 
 DeviceView<double **> SlotExchange::fetched(const DeviceView<double **> &values) const
 {
   const std::size_t width = values.extent(1);
-  if (comm_->getSize() == 1) return DeviceView<double **>("rpc::bound::fetched", 0, width);
+  if (on_one_rank()) return DeviceView<double **>("rpc::bound::fetched", 0, width);
   Kokkos::fence();
   const auto here = to_host(values);
   std::vector<double> sent(here.extent(0) * width);

@@ -18,7 +18,7 @@ public:
   /// Collective.
   /// @param node  (facets, nodes of one) vertices first, in an order that all ranks agree on
   /// @param node_of  (slots) the node whose rank has the numbers
-  SlotExchange(const mesh::Mesh &mesh, const HostView<LO **> &node, const std::vector<int> &node_of);
+  SlotExchange(const mesh::Mesh &mesh, const DeviceView<LO **> &node, const std::vector<int> &node_of);
 
   /// Where the numbers of slots are, for kernels.
   struct Rows {
@@ -29,6 +29,7 @@ public:
     }
   };
   const Rows &rows() const { return rows_; }
+  bool on_one_rank() const { return !exchange_; } ///< then there is nothing to fetch
   /// (served, 2) facet and slot of this rank's numbers that others ask for.
   const DeviceView<LO *[2]> &served() const { return served_; }
   /// (rows(), width) Collective. @param values  (served, width)

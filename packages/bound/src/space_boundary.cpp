@@ -88,7 +88,10 @@ void add_space_load(const fem::Discretization &discretization, const SpaceFacets
   const fem::VectorField traction = fem::force_per_area(discretization, side, load);
   const std::vector<LO> facets = host.facets_of(side);
   const FacetPolynomials polynomials(3, ReferenceStress::degree_of_loads_in_space);
-  const FacetRule rule = facet_rule(3, along), fine = refined(3, facet_rule(3, along - 1), parts);
+  const bool is_constant =
+      std::all_of(traction.begin(), traction.end(), [](const ScalarField &t) { return t.is_constant(); });
+  const FacetRule rule = facet_rule(3, along),
+                  fine = is_constant ? FacetRule{} : refined(3, facet_rule(3, along - 1), parts);
   const auto values = values_of(polynomials, rule), there = values_of(polynomials, fine);
   const HostView<double **> x = host.points(facets, rule), between = host.points(facets, fine);
   double largest = 0, off_most = 0;

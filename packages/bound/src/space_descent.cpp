@@ -47,7 +47,7 @@ Descended descended(const SpaceInput &in, const mesh::Mesh &mesh, const fem::Nod
                     const BoundaryTractions &boundary, const SpaceForms &forms, DeviceView<double ***> &Q,
                     const Tractions &mean, const int steps)
 {
-  const SpaceExchanges exchanges = space_exchanges(mesh, in.facets);
+  const SpaceExchanges exchanges(mesh, in.facets.node);
   Descended found{equilibrated(in, boundary, Q, mean, around, exchanges), {}};
   Q = {};
   return_freed_memory();

@@ -54,6 +54,13 @@ std::pair<Rings, bool> rings_of(const mesh::Topology &t, const LO owned_nodes, c
 {
   const mesh::Entities &edges = t.edges;
   Rings rings;
+  const std::size_t entries = edges.of_cell.size() + edges.size();
+  rings.first.reserve(edges.size() + 1);
+  rings.cells.reserve(edges.of_cell.size());
+  rings.facets.reserve(entries);
+  rings.toward.reserve(entries);
+  rings.count.reserve(edges.size());
+  rings.edge.reserve(edges.size());
   for (int e = 0; e < edges.size(); ++e) {
     const int n = edges.num_cells_at(e);
     LO a = edges.vertices[2 * static_cast<std::size_t>(e)], b = edges.vertices[2 * static_cast<std::size_t>(e) + 1];
@@ -119,9 +126,9 @@ View view_of(const Values &values, const std::string &label)
 /// The cells at facets in their order, and which facet of these it is; collective.
 /// @param entity  (facets) number in the topology
 /// @param id  (local nodes)   @param nodes  (cells, nodes)   @param facet  (cells, 4)
-void order_cells(const mesh::Topology &t, const std::vector<int> &entity, const std::vector<GO> &id,
-                 const HostView<LO **> &nodes, const HostView<LO **> &facet, const SlotExchange &of_facets,
-                 SpaceFacets &f)
+template <class Nodes, class OfCell>
+void order_cells(const mesh::Topology &t, const std::vector<int> &entity, const std::vector<GO> &id, const Nodes &nodes,
+                 const OfCell &facet, const SlotExchange &of_facets, SpaceFacets &f)
 {
   const LO count = t.facets.size();
   const auto opposite = [&](const LO e, const int k) { // which vertex of its k-th cell lies opposite
@@ -203,8 +210,9 @@ SpaceFacets space_facets_of(const fem::Discretization &d)
   f.ordinal = DeviceView<signed char *[2]>("rpc::bound::ordinal", count);
   f.node = DeviceView<LO **>("rpc::bound::node", count, quadratic ? 6 : 3);
   f.counts = DeviceView<char *>("rpc::bound::counts", count);
-  const HostView<LO **> nodes("rpc::bound::nodes_of_cell", num_cells, per_cell),
-      of_cell("rpc::bound::of_cell", num_cells, 4), node("rpc::bound::node", count, quadratic ? 6 : 3);
+  const auto nodes = mirror(f.nodes_of_cell);
+  const auto of_cell = mirror(f.of_cell);
+  const auto node = mirror(f.node);
   std::vector<int> entity; // in the topology
   std::vector<LO> number(count);
   for (const bool outer : {true, false}) {
@@ -237,7 +245,10 @@ SpaceFacets space_facets_of(const fem::Discretization &d)
         node(facet, 3 + m) = nodes(c, middle_of(element, own[m == 1 ? 1 : 0], own[m == 0 ? 1 : 2]));
     }
   }
-  order_cells(t, entity, id, nodes, of_cell, SlotExchange(mesh, node, {0}), f);
+  Kokkos::deep_copy(f.nodes_of_cell, nodes);
+  Kokkos::deep_copy(f.of_cell, of_cell);
+  Kokkos::deep_copy(f.node, node);
+  order_cells(t, entity, id, nodes, of_cell, SlotExchange(mesh, f.node, {0}), f);
   const auto [rings, wrong] = rings_of(t, mesh.num_owned_nodes(), id, of_cell, to_host(f.cell), nodes);
   RPC_REQUIRE_CODE(
       max_all(mesh.comm(), wrong ? 1 : 0) == 0, ExitCode::bad_mesh,
@@ -260,15 +271,6 @@ SpaceFacets space_facets_of(const fem::Discretization &d)
       place(at, own) = k;
     }
   }
-  const auto copy = [](const auto &to, const auto &from) {
-    const auto host = mirror(to);
-    for (std::size_t i = 0; i < from.extent(0); ++i)
-      for (std::size_t j = 0; j < from.extent(1); ++j) host(i, j) = from(i, j);
-    Kokkos::deep_copy(to, host);
-  };
-  copy(f.nodes_of_cell, nodes);
-  copy(f.of_cell, of_cell);
-  copy(f.node, node);
   Kokkos::deep_copy(f.edge, edge);
   Kokkos::deep_copy(f.ring, ring);
   Kokkos::deep_copy(f.place, place);
@@ -278,15 +280,6 @@ SpaceFacets space_facets_of(const fem::Discretization &d)
   f.toward = view_of<DeviceView<signed char *>>(rings.toward, "rpc::bound::toward");
   f.num_ring_facets = view_of<DeviceView<int *>>(rings.count, "rpc::bound::num_ring_facets");
   return f;
-}
-
-SpaceExchanges space_exchanges(const mesh::Mesh &mesh, const SpaceFacets &facets)
-{
-  const auto from = to_host(facets.node);
-  const HostView<LO **> node("rpc::bound::node", from.extent(0), from.extent(1));
-  for (std::size_t f = 0; f < from.extent(0); ++f)
-    for (std::size_t a = 0; a < from.extent(1); ++a) node(f, a) = from(f, a);
-  return {mesh, node};
 }
 
 } // namespace rpc::bound

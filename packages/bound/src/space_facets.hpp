@@ -65,7 +65,7 @@ struct SpaceExchanges {
   SlotExchange of_facets, of_nodes, of_edges;
 
   /// Collective. @param node  (facets, nodes of one) SpaceFacets::node
-  SpaceExchanges(const mesh::Mesh &mesh, const HostView<LO **> &node)
+  SpaceExchanges(const mesh::Mesh &mesh, const DeviceView<LO **> &node)
       : of_facets(mesh, node, {0}), of_nodes(mesh, node, all_of(node.extent(1))), of_edges(mesh, node, {0, 1, 0})
   {
   }
@@ -76,6 +76,5 @@ struct SpaceExchanges {
     return all;
   }
 };
-SpaceExchanges space_exchanges(const mesh::Mesh &mesh, const SpaceFacets &facets);
 
 } // namespace rpc::bound

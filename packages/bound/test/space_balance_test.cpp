@@ -126,7 +126,7 @@ TEST_P(Body, RingsAnswerWithTractionsInBalanceThatLeaveWhatIsKnown)
 {
   const Vector u(d.owned_dofs);
   const SpaceForms forms = cell_forms(in, u);
-  const SpaceExchanges exchanges = space_exchanges(*d.mesh, in.facets);
+  const SpaceExchanges exchanges(*d.mesh, in.facets.node);
   const RingSolves rings(in, boundary, forms, exchanges);
   const Tractions g = drawn(), z("z", g.extent(0));
   rings.apply(g, z);
@@ -166,7 +166,7 @@ TEST_P(Body, RingsAreSymmetricAndAnswerWithTheInverseOfTheirEnergies)
 {
   const Vector u(d.owned_dofs);
   const SpaceForms forms = cell_forms(in, u);
-  const SpaceExchanges exchanges = space_exchanges(*d.mesh, in.facets);
+  const SpaceExchanges exchanges(*d.mesh, in.facets.node);
   const RingSolves rings(in, boundary, forms, exchanges);
   const Tractions g = drawn(), h = drawn(), z("z", g.extent(0)), y("y", g.extent(0));
   const DeviceView<float *> Az("Az", g.extent(0));
@@ -210,7 +210,7 @@ TEST_P(Body, EquilibratedTractionsHaveTheMomentsThatCellsAskFor)
     for (int i = 0; i < 3; ++i) Q(c, n, i) += in.facets.sign(c, s) * moment(hidden, in.facets.of_cell(c, s), a, i);
   });
   Kokkos::deep_copy(used, Q);
-  const Tractions t = equilibrated(in, boundary, used, mean, d.node_to_cells, space_exchanges(*d.mesh, in.facets));
+  const Tractions t = equilibrated(in, boundary, used, mean, d.node_to_cells, SpaceExchanges(*d.mesh, in.facets.node));
   each_moment([&](const LO c, const int s, const int a, const int n) {
     for (int i = 0; i < 3; ++i) Q(c, n, i) -= in.facets.sign(c, s) * moment(t, in.facets.of_cell(c, s), a, i);
   });
@@ -239,7 +239,7 @@ TEST_P(Body, TheEnergyOfTractionsIsThatOfTheirStress)
   in.force[0] = 0.3;
   in.force[2] = -0.7;
   const SpaceForms forms = cell_forms(in, u);
-  const SpaceExchanges exchanges = space_exchanges(*d.mesh, in.facets);
+  const SpaceExchanges exchanges(*d.mesh, in.facets.node);
   const RingSolves rings(in, boundary, forms, exchanges);
   const DeviceView<double *> of_cell("of_cell", in.num_cells());
   const Tractions g = drawn(), z("z", g.extent(0)), at("at", g.extent(0));
