@@ -235,10 +235,12 @@ RigidMotion HeldPart::carried(const RigidMotion &motion, const LO begin, const L
         const Friction f = friction_of(reactions, i);
         const Answer answer = most_against(math::magnitude(towards) > rounding ? towards : 0, slide.length,
                                            reactions.limit(i), reactions.weight(i), f);
+        double row[6] = {}; // a point's forces together: near the limit rounding counts
         if (answer.endless) // by rounding, or steepest() has found its ray: what is left is the bound without pressure
-          add_answer(reactions, i, 0, reactions.weight(i) * math::fmin(f.bound, f.limit), slide, sum);
+          add_answer(reactions, i, 0, reactions.weight(i) * math::fmin(f.bound, f.limit), slide, row);
         else
-          add_answer(reactions, i, answer.pressure, answer.friction, slide, sum);
+          add_answer(reactions, i, answer.pressure, answer.friction, slide, row);
+        for (int k = 0; k < 6; ++k) sum[k] += row[k];
       });
   RigidMotion all;
   Teuchos::reduceAll(comm_, Teuchos::REDUCE_SUM, 6, local.data(), all.data());
